@@ -1,0 +1,31 @@
+# What every target of the project shares: language, warnings, determinism, sanitizers.
+add_library(pvt_flags INTERFACE)
+target_compile_options(pvt_flags INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+    -ffp-contract=off
+    $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes>
+    $<$<BOOL:${PARAVENT_WERROR}>:-Werror>)
+target_compile_definitions(pvt_flags INTERFACE _GNU_SOURCE)
+if(PARAVENT_SANITIZE)
+    target_compile_options(pvt_flags INTERFACE
+        -fsanitize=${PARAVENT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+    target_link_options(pvt_flags INTERFACE -fsanitize=${PARAVENT_SANITIZE})
+endif()
+
+# pvt_add_library(core) makes paravent_core, known as paravent::core here and after installation.
+function(pvt_add_library NAME)
+    add_library(paravent_${NAME})
+    add_library(paravent::${NAME} ALIAS paravent_${NAME})
+    set_target_properties(paravent_${NAME} PROPERTIES
+        EXPORT_NAME ${NAME}
+        C_STANDARD 17 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
+        CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
+        C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
+        POSITION_INDEPENDENT_CODE ON
+        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+    target_include_directories(paravent_${NAME}
+        PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/lib/include>
+               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+        PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+    target_link_libraries(paravent_${NAME} PRIVATE $<BUILD_INTERFACE:pvt_flags>)
+endfunction()

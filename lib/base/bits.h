@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Rows of bits in 64-bit words, lowest bit first.
+#ifndef PVT_BASE_BITS_H
+#define PVT_BASE_BITS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+static inline size_t pvtGetWordCount(size_t bits)
+{
+    return (bits + 63) / 64;
+}
+
+static inline bool pvtGetBit(const uint64_t* row, size_t bit)
+{
+    return (row[bit >> 6] >> (bit & 63)) & 1;
+}
+
+static inline void pvtSetBit(uint64_t* row, size_t bit)
+{
+    row[bit >> 6] |= UINT64_C(1) << (bit & 63);
+}
+
+static inline void pvtClearBit(uint64_t* row, size_t bit)
+{
+    row[bit >> 6] &= ~(UINT64_C(1) << (bit & 63));
+}
+
+/// The bits from `begin` to `end` − 1 of one word, 0 ≤ begin ≤ end ≤ 64.
+static inline uint64_t pvtMakeMask(unsigned begin, unsigned end)
+{
+    const uint64_t below = end == 64 ? ~UINT64_C(0) : (UINT64_C(1) << end) - 1;
+    return begin == 64 ? 0 : below & (~UINT64_C(0) << begin);
+}
+
+static inline int pvtCountBits(uint64_t word)
+{
+    return __builtin_popcountll(word);
+}
+
+/// Sets the bits from `begin` to `end` − 1 of a row; none when end ≤ begin.
+static inline void pvtSetBitRange(uint64_t* row, size_t begin, size_t end)
+{
+    while (begin < end) {
+        const size_t word = begin >> 6;
+        const size_t stop = (word + 1) * 64 < end ? (word + 1) * 64 : end;
+        row[word] |= pvtMakeMask((unsigned)(begin & 63), (unsigned)(stop - word * 64));
+        begin = stop;
+    }
+}
+
+/// True when all bits from `begin` to `end` − 1 are set.
+static inline bool pvtIsBitRangeSet(const uint64_t* row, size_t begin, size_t end)
+{
+    while (begin < end) {
+        const size_t word = begin >> 6;
+        const size_t stop = (word + 1) * 64 < end ? (word + 1) * 64 : end;
+        const uint64_t mask = pvtMakeMask((unsigned)(begin & 63), (unsigned)(stop - word * 64));
+        if ((row[word] & mask) != mask) {
+            return false;
+        }
+        begin = stop;
+    }
+    return true;
+}
+
+#endif

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// How good is an occluder: precision, recall, coverage, over-occlusion (paper, section 6.1).
+#ifndef PARAVENT_EVALUATE_H
+#define PARAVENT_EVALUATE_H
+
+#include <paravent/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct pvtEvaluateOptions {
+    int views;     ///< 1 to 65536 random directions; default 256
+    int quads;     ///< 1 to 10,000,000 quads a view of each family; default 32000
+    int pixels;    ///< 16 to 4096 along the longer side of the original's screen box; default 512
+    uint64_t seed; ///< default 1
+} pvtEvaluateOptions;
+
+/// Fractions of 1. Precision is 1 when the occluder hides no quad, recall is 1 when the original
+/// hides none.
+typedef struct pvtQuadScore {
+    double precision, recall;
+} pvtQuadScore;
+
+typedef struct pvtViewScore {
+    pvtVec3 direction;
+    pvtQuadScore uniform, small;
+    double coverage;      ///< of the original's pixels
+    double overArea;      ///< [wu²] covered by the occluder alone
+    double overThickness; ///< [wu] largest distance of such a pixel from the original's silhouette
+} pvtViewScore;
+
+typedef struct pvtOccluderScore {
+    size_t triangleCount;
+    pvtQuadScore uniform, small; ///< counts summed over all views
+    double coverage, overArea;   ///< mean over the views
+    double overThickness;        ///< [wu] the largest of all views
+    size_t worstView;            ///< the lowest uniform recall; ties: the first
+    pvtViewScore* views;         ///< viewCount
+    size_t viewCount;
+} pvtOccluderScore;
+
+typedef struct pvtEvaluation {
+    pvtEvaluateOptions options;
+    size_t originalTriangleCount;
+    pvtOccluderScore* occluders; ///< one for each mesh handed in, same views, same quads
+    size_t count;
+} pvtEvaluation;
+
+PVT_API pvtEvaluateOptions pvtDefaultEvaluateOptions(void);
+
+/// Judges `occluders` against `original`; neither has to be made by this library. A mesh may be
+/// empty. The definitions stand in lib/PIPELINE.md.
+PVT_API pvtStatus pvtEvaluateOccluders(pvtContext* context, const pvtEvaluateOptions* options,
+                                       const pvtMesh* original, const pvtMesh* occluders,
+                                       size_t count, pvtEvaluation* evaluation);
+PVT_API void pvtEvaluation_Free(pvtContext* context, pvtEvaluation* evaluation);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Models and images, in and out.
+#ifndef PARAVENT_IO_H
+#define PARAVENT_IO_H
+
+#include <paravent/image.h>
+#include <paravent/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// What to do with materials whose alpha is masked.
+typedef enum pvtMasked { PVT_MASKED_AUTO, PVT_MASKED_OPAQUE, PVT_MASKED_SKIP } pvtMasked;
+
+typedef struct pvtLoadOptions {
+    int scene;        ///< −1: the default scene, or the first; else its index; default −1
+    const char* node; ///< a node's name: only it and what is below it; null: everything
+    pvtMasked masked; ///< default PVT_MASKED_AUTO
+    size_t maxBytes;  ///< of any one file; default 4 GiB
+} pvtLoadOptions;
+
+/// One instance of a mesh by a node: a run of triangles of the model's mesh.
+typedef struct pvtModelPart {
+    char* name; ///< the node's, else the mesh's, else "node_12"; UTF-8
+    size_t firstTriangle, triangleCount;
+    size_t meshIndex;     ///< parts with the same number are instances of the same mesh
+    double transform[16]; ///< mesh to world, column after column
+} pvtModelPart;
+
+/// A file's triangles with world transforms applied; mirrored instances are wound the right way.
+typedef struct pvtModel {
+    pvtMesh mesh;
+    pvtModelPart* parts;
+    size_t partCount;
+} pvtModel;
+
+PVT_API pvtLoadOptions pvtDefaultLoadOptions(void);
+
+/// glTF and GLB by their contents; OBJ, PLY, STL, FBX and DAE by their names' endings. Triangles
+/// with positions that are not finite are dropped with a warning. PVT_INVALID_INPUT names file,
+/// place, reason and remedy; PVT_UNSUPPORTED names the format or the required extension that is
+/// missing. A file without any triangle is PVT_INVALID_INPUT.
+PVT_API pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* options, const char* path,
+                               pvtModel* model);
+PVT_API void pvtModel_Free(pvtContext* context, pvtModel* model);
+
+/// A number or a text to store with a node, under extras.paravent of glTF.
+typedef struct pvtExtra {
+    const char* key;
+    double number;
+    const char* text; ///< not null: instead of the number
+} pvtExtra;
+
+/// A node at the root of the file.
+typedef struct pvtSaveItem {
+    const char* name;
+    const pvtMesh* mesh;
+    const pvtExtra* extras;
+    size_t extraCount;
+} pvtSaveItem;
+
+/// Writes .glb, .gltf (with its buffer inside), .obj or .ply by the path's ending; whole or not at
+/// all. PVT_UNSUPPORTED for another ending, PVT_OUTPUT_FAILED with the reason.
+PVT_API pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem* items,
+                               size_t count);
+/// Whether pvtSaveModel knows the path's ending: to be asked before the long work.
+PVT_API bool pvtCanSaveModel(const char* path);
+
+/// PNG, by OpenImageIO, which is opened at the first call; PVT_UNSUPPORTED without it.
+PVT_API pvtStatus pvtSaveImage(pvtContext* context, const char* path, const pvtImage* image);
+/// Any format that OpenImageIO reads.
+PVT_API pvtStatus pvtLoadImage(pvtContext* context, const char* path, pvtImage* image);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// From a mesh to an occluder: candidates, selection under a budget, and the driver
+// (paper, section 4.5).
+#ifndef PARAVENT_OCCLUDER_H
+#define PARAVENT_OCCLUDER_H
+
+#include <paravent/occlusion.h>
+#include <paravent/section.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// A length in world units or in voxels.
+typedef struct pvtLength {
+    double value;
+    bool inVoxels;
+} pvtLength;
+
+/// Polygons on planes of one grid, and the triangles they make. Polygon p lies on planes[p] and is
+/// loop p of `loops`; no loop is a hole. Triangles face the side that the plane's normal points to.
+typedef struct pvtOccluder {
+    pvtGridFrame frame;
+    pvtPlane* planes; ///< loops.loopCount
+    pvtLoopSet loops;
+    pvtMesh mesh;   ///< positions are rounded to float, as files store them
+    double measure; ///< [wu³] total occlusion measure
+} pvtOccluder;
+
+PVT_API void pvtOccluder_Free(pvtContext* context, pvtOccluder* occluder);
+
+typedef enum pvtMethod {
+    PVT_METHOD_PLANAR, ///< chain levels by gain per triangle
+    PVT_METHOD_PAPER,  ///< whole polygons by gain, then single steps back down to the budget
+} pvtMethod;
+
+typedef struct pvtSelectOptions {
+    pvtMethod method;  ///< default PVT_METHOD_PLANAR
+    int budget;        ///< 1 to 65535 triangles; default 64
+    double completion; ///< paper's α as a fraction: stop when a polygon gains less; default 0.01
+} pvtSelectOptions;
+
+/// A candidate: chain `chain` of `chains`, on `plane`.
+typedef struct pvtCandidateSet {
+    pvtChainSet chains;
+    pvtPlane* planes; ///< chains.count
+    pvtGridFrame frame;
+} pvtCandidateSet;
+
+PVT_API void pvtCandidateSet_Free(pvtContext* context, pvtCandidateSet* set);
+
+/// How many triangles of each candidate are taken; 0: none.
+typedef struct pvtCut {
+    int32_t* triangles; ///< one a candidate
+    size_t count;
+} pvtCut;
+
+PVT_API void pvtCut_Free(pvtContext* context, pvtCut* cut);
+PVT_API pvtSelectOptions pvtDefaultSelectOptions(void);
+
+/// Chooses a cut through all chains that holds the budget and maximises the measure over `views`.
+PVT_API pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options,
+                                    const pvtViewSet* views, const pvtCandidateSet* candidates,
+                                    pvtCut* cut);
+
+/// Every polygon of the occluder against the grid, exactly, by code that the optimizer does not
+/// share: `*outside` is the number of clear voxels that some polygon reaches into by more than
+/// 1/1024 voxel.
+PVT_API pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed,
+                                   const pvtMesh* occluder, uint64_t* outside);
+
+typedef struct pvtBuildOptions {
+    int budget;             ///< 1 to 65535 triangles; default 64
+    int resolution;         ///< [vx] 8 to 2048 along the longest side; default 256
+    double error;           ///< [wu] > 0: sets the voxel size instead of resolution; default 0
+    pvtLength tolerance;    ///< ≥ 0: how far a polygon may leave the strict interior; default 0
+    pvtLength smallestHole; ///< ≥ 0: narrower openings count as closed; default 0
+    bool ground, terrain;   ///< see pvtSolidOptions; default false
+    pvtAxis up;             ///< default y
+    int enclosed;           ///< see pvtSolidOptions; default −1
+    pvtMethod method;       ///< default PVT_METHOD_PLANAR
+    pvtViewOptions views;   ///< what to optimise for; `up` follows the field above
+    uint64_t seed;          ///< default 1
+    /// Null: slices are made on the CPU. Else called once the voxel mesh is there, to make the
+    /// slicer that the build uses; `release` ends it.
+    pvtStatus (*createSlicer)(pvtContext* context, void* user, const pvtGridFrame* frame,
+                              const pvtMesh* voxelMesh, pvtSlicer* slicer);
+    void (*releaseSlicer)(pvtContext* context, void* user, pvtSlicer* slicer);
+    void* slicerUser;
+} pvtBuildOptions;
+
+/// What a build can tell about itself.
+typedef struct pvtBuildStats {
+    int resolution;        ///< [vx] along the longest side, as used
+    double voxelSize;      ///< [wu]
+    double tolerance;      ///< [wu]
+    double smallestHole;   ///< [wu]
+    double errorBound;     ///< [wu] √3 voxels + max(tolerance, smallestHole / 2): no ray that the
+                           ///< occluder blocks passes the original farther away than this
+    double insideFraction; ///< of the bounds that is strictly inside
+    double measure;        ///< [wu³] of the occluder
+    double measureOfSolid; ///< [wu³] of everything that may be covered: the ceiling
+    uint64_t outside;      ///< what pvtCheckOccluder found
+    size_t candidateCount;
+    double suggestedHole; ///< [wu] 0 unless the solid came out hollow and this would fill it
+    struct {
+        double voxelize, solid, sections, chains, select, check, total;
+    } seconds;
+} pvtBuildStats;
+
+PVT_API pvtBuildOptions pvtDefaultBuildOptions(void);
+
+/// The whole of it, from triangles to an occluder of at most options->budget triangles. Fills
+/// `stats` (may be null) as far as it came, also on failure. PVT_NOTHING_INSIDE names the options
+/// that would help.
+PVT_API pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options,
+                                   const pvtMesh* mesh, pvtOccluder* occluder,
+                                   pvtBuildStats* stats);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Surface voxels, what is inside them, and the closed mesh around it (paper, section 4.1).
+#ifndef PARAVENT_VOXEL_H
+#define PARAVENT_VOXEL_H
+
+#include <paravent/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Where a grid stands: voxel (i, j, k) is the cube [i, i+1] × [j, j+1] × [k, k+1] times voxelSize
+/// from origin. Counts along x, y, z.
+typedef struct pvtGridFrame {
+    pvtVec3 origin;   ///< [wu] the lower corner of voxel (0, 0, 0)
+    double voxelSize; ///< [wu]
+    int size[3];      ///< [vx]
+} pvtGridFrame;
+
+/// One bit a voxel, 64 voxels a word along x, lowest bit first. Row (y, z) starts at word
+/// (z × size[1] + y) × wordsPerRow. Bits past size[0] are 0.
+typedef struct pvtBitGrid {
+    pvtGridFrame frame;
+    uint64_t* words;
+    size_t wordsPerRow;
+    size_t wordCount; ///< wordsPerRow × size[1] × size[2]
+} pvtBitGrid;
+
+PVT_API void pvtBitGrid_Free(pvtContext* context, pvtBitGrid* grid);
+/// False outside the grid.
+PVT_API bool pvtBitGrid_Get(const pvtBitGrid* grid, int x, int y, int z);
+PVT_API uint64_t pvtBitGrid_Count(const pvtBitGrid* grid);
+
+typedef struct pvtVoxelizeOptions {
+    int resolution;   ///< [vx] along the longest side of the bounds, 8 to 2048; default 256
+    double voxelSize; ///< [wu] > 0: instead of resolution; default 0
+    double padding;   ///< [wu] free space kept around the bounds, at least two voxels; default 0
+} pvtVoxelizeOptions;
+
+PVT_API pvtVoxelizeOptions pvtDefaultVoxelizeOptions(void);
+
+/// Marks every voxel whose closed cube a triangle touches; rounding errors only ever mark more.
+/// Degenerate triangles count as segments and points. PVT_LIMIT names the finest resolution that
+/// would fit in memory; PVT_INVALID_INPUT for a mesh without triangles or of no extent at all.
+PVT_API pvtStatus pvtVoxelizeMesh(pvtContext* context, const pvtVoxelizeOptions* options,
+                                  const pvtMesh* mesh, pvtBitGrid* surface);
+
+typedef enum pvtAxis { PVT_AXIS_X, PVT_AXIS_Y, PVT_AXIS_Z } pvtAxis;
+
+typedef struct pvtSolidOptions {
+    double smallestHole; ///< [wu] openings narrower than this count as closed; default 0
+    bool ground;         ///< the plane below the bounds counts as closed; default false
+    bool terrain;        ///< all below the lowest surface of a column is inside; default false
+    pvtAxis up;          ///< for ground and terrain; default y
+    int enclosed;        ///< 0 to 25 of the 26 directions: an outside voxel from which at most this
+                         ///< many escape counts as inside; −1: off; default −1
+} pvtSolidOptions;
+
+/// What the surface encloses. `inside` holds the touched voxels too; the strict interior is
+/// inside and not surface.
+typedef struct pvtSolid {
+    pvtBitGrid inside;
+    pvtBitGrid surface;
+    uint64_t insideCount;  ///< [vx] in `inside`
+    uint64_t surfaceCount; ///< [vx]
+    uint64_t strictCount;  ///< [vx] inside and not touched
+    double insideFraction; ///< strictCount over the voxels of the mesh's bounds
+} pvtSolid;
+
+PVT_API pvtSolidOptions pvtDefaultSolidOptions(void);
+
+/// Floods from the border through free voxels, 6-connected; what is not reached is inside.
+/// With smallestHole D only a ball of diameter D can pass: nothing wider than D plus √12 voxels is
+/// ever covered. Warns, with the option that would help, when a closed-looking mesh comes out
+/// hollow. The surface should have been padded by D.
+PVT_API pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
+                               const pvtBitGrid* surface, pvtSolid* solid);
+PVT_API void pvtSolid_Free(pvtContext* context, pvtSolid* solid);
+
+/// A smallest hole [wu] at which a hollow solid would fill, tried at growing sizes up to a quarter
+/// of the longest side; 0 when none does, or when the solid is not hollow.
+PVT_API pvtStatus pvtSuggestSmallestHole(pvtContext* context, const pvtSolidOptions* options,
+                                         const pvtBitGrid* surface, double* smallestHole);
+
+/// Where an occluder may lie. tolerance 0: the strict interior. Above 0: the solid with its touched
+/// voxels, and every voxel whose centre is within `tolerance` [wu] of the centre of one of those.
+PVT_API pvtStatus pvtMakeAllowedGrid(pvtContext* context, const pvtSolid* solid, double tolerance,
+                                     pvtBitGrid* allowed);
+
+/// Squared distance [vx²] from each voxel's centre to the centre of the nearest marked voxel,
+/// exact, one value a voxel in x, y, z order; values above `limit` [vx²] are stored as limit + 1.
+/// `distances` has frame.size[0] × [1] × [2] entries.
+PVT_API pvtStatus pvtTransformGridDistance(pvtContext* context, const pvtBitGrid* grid,
+                                           uint32_t limit, uint32_t* distances);
+
+/// Two triangles for each face between a set and a free voxel, wound towards the free one: closed
+/// and 2-manifold, also where two voxels meet in an edge or a corner only.
+PVT_API pvtStatus pvtBuildVoxelMesh(pvtContext* context, const pvtBitGrid* grid, pvtMesh* mesh);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

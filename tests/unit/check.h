@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What every unit test includes: cmocka in the order that it wants, and a context.
+#ifndef PVT_TEST_CHECK_H
+#define PVT_TEST_CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <paravent/base.h>
+#include <stdio.h>
+
+/// Fails with the context's message when `call` is not PVT_OK.
+#define CHECK_OK(context, call)                                                                    \
+    do {                                                                                           \
+        if ((call) != PVT_OK) {                                                                    \
+            fail_msg("%s: %s", #call, pvtContext_GetMessage(context));                             \
+        }                                                                                          \
+    } while (0)
+
+static inline pvtContext* CreateTestContext(int threadCount)
+{
+    pvtContextDef def = pvtDefaultContextDef();
+    def.threadCount = threadCount;
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    return context;
+}
+
+/// Also fails when something is still held.
+static inline void DestroyTestContext(pvtContext* context)
+{
+    assert_int_equal(pvtContext_GetHeldBytes(context), 0);
+    pvtDestroyContext(context);
+}
+
+#endif
