@@ -36,6 +36,7 @@ PVT_API pvtVec3 pvtPlane_ToWorld(const pvtPlane* plane, const pvtGridFrame* fram
 /// Unit normal in the world; its dominant coordinate is positive.
 PVT_API pvtVec3 pvtPlane_GetNormal(const pvtPlane* plane);
 /// The planned plane nearest to the one through `point` [wu] across `direction` (any length > 0).
+/// Its axis is that of the direction's largest coordinate; the lowest axis of equals.
 PVT_API pvtPlane pvtMakePlane(const pvtGridFrame* frame, pvtVec3 direction, pvtVec3 point);
 /// True area [vx²] per unit area of (u, v): 1 / |normal[axis]|, 1 to √3.
 PVT_API double pvtPlane_GetAreaScale(const pvtPlane* plane);
@@ -115,28 +116,31 @@ PVT_API pvtStatus pvtPlanSections(pvtContext* context, const pvtPlanOptions* opt
 PVT_API void pvtSectionPlan_Free(pvtContext* context, pvtSectionPlan* plan);
 
 typedef struct pvtSearchOptions {
-    pvtSliceRule rule;       ///< of the slices that come out; default PVT_SLICE_COVERED
-    int cellsPerVoxel;       ///< 1, 2 or 4, of the slices that come out; default 1
+    pvtSliceRule rule;       ///< of the areas that come out; default PVT_SLICE_COVERED
+    int cellsPerVoxel;       ///< 1, 2 or 4, of the areas that come out; default 1
     const pvtSlicer* slicer; ///< null: pvtSliceGrid; borrowed; default null
 } pvtSearchOptions;
 
+/// A plane worth keeping. Its bitmap is not stored: at the finest grids thousands of them would
+/// fill the memory, and pvtSliceGrid makes one again in far less time than its contours take.
 typedef struct pvtSection {
     pvtPlane plane;
-    pvtBitmap slice;
-    double area; ///< [vx²]
+    double area; ///< [vx²] of the slice by options->rule at options->cellsPerVoxel, above 0
 } pvtSection;
 
-/// The largest slice of each bin whose area is not 0, in the plan's order.
+/// The best section of each bin that has any, in the plan's order.
 typedef struct pvtSectionSet {
     pvtSection* sections;
     size_t count;
-    int cellsPerVoxel;
+    pvtSliceRule rule; ///< of the areas
+    int cellsPerVoxel; ///< of the areas
 } pvtSectionSet;
 
 PVT_API pvtSearchOptions pvtDefaultSearchOptions(void);
 
-/// Slices every plane of the plan and keeps the largest of each bin (ties: the first). The search
-/// itself counts centre slices; the slice kept follows options->rule.
+/// Slices every plane of the plan, one cell a voxel by PVT_SLICE_CENTER, and keeps the plane of the
+/// largest slice in each bin (ties: the first). Its area is then measured by options->rule, and
+/// planes without any are dropped.
 PVT_API pvtStatus pvtSearchSections(pvtContext* context, const pvtSearchOptions* options,
                                     const pvtSliceVolume* volume, const pvtSectionPlan* plan,
                                     pvtSectionSet* set);
