@@ -41,29 +41,27 @@ PVT_API pvtViewOptions pvtDefaultViewOptions(void);
 PVT_API pvtStatus pvtMakeViews(pvtContext* context, const pvtViewOptions* options, pvtViewSet* set);
 PVT_API void pvtViewSet_Free(pvtContext* context, pvtViewSet* set);
 
-/// Sum over the set bits of the Euclidean distance [px] from the pixel's centre to the nearest
-/// clear pixel's centre; everything outside the mask is clear. Exact squared distances; each root
-/// rounded to 1/256 px. `rows` has wordsPerRow × height words, lowest bit first; width up to
-/// 64 × wordsPerRow, at most 4096 a side.
-PVT_API uint64_t pvtSumDistances(const uint64_t* rows, int wordsPerRow, int height,
-                                 uint32_t* scratch);
-/// Words of scratch that pvtSumDistances needs.
-PVT_API size_t pvtGetDistanceScratchCount(int wordsPerRow, int height);
-/// The squared distances themselves [px²], 64 × wordsPerRow × height of them.
-PVT_API void pvtTransformDistance(const uint64_t* rows, int wordsPerRow, int height,
-                                  uint32_t* distances);
+/// Masks are square bitmaps of 64, 128 or 256 pixels a side: row y starts at word y × size / 64,
+/// lowest bit first. What lies outside of a mask counts as clear.
 
-typedef struct pvtMeasureOptions {
-    int pixels; ///< 64, 128 or 256 a side of the mask, stretched over the bounds; default 64
-} pvtMeasureOptions;
-
-PVT_API pvtMeasureOptions pvtDefaultMeasureOptions(void);
+/// Entries of a table over squared distances in a mask of this size: (size / 2)² + 1.
+PVT_API size_t pvtGetDistanceTableCount(int size);
+/// table[d²] = d^exponent × 256, rounded: what a covered pixel is worth whose nearest clear pixel
+/// is d pixels away. An exponent of 1 gives the paper's measure; beams of radius r then count
+/// alike. A higher one weighs wide beams more. Exponents from 0 to 2.
+PVT_API void pvtFillDistanceTable(int size, double exponent, uint32_t* table);
+/// Σ table[d²] over the set pixels, d being the Euclidean distance [px] from a pixel's centre to
+/// that of the nearest clear pixel: exact, and the same on every machine. `size` is 64, 128 or 256.
+PVT_API uint64_t pvtSumDistances(const uint64_t* rows, int size, const uint32_t* table);
+/// The squared distances themselves [px²], size × size of them, 0 where the mask is clear.
+PVT_API void pvtTransformDistance(const uint64_t* rows, int size, uint16_t* distances);
 
 /// The total occlusion measure of a mesh [wu³]: mean over the views, by weight, of
-/// Σ distance × pixel area. `bounds` fixes the pixel size, the same for all that are compared.
-PVT_API pvtStatus pvtMeasureOcclusion(pvtContext* context, const pvtMeasureOptions* options,
-                                      const pvtViewSet* views, const pvtBox3* bounds,
-                                      const pvtMesh* mesh, double* measure);
+/// Σ distance × pixel area, on masks of `size` pixels a side that span the projected bounds. Only
+/// numbers of the same bounds, size and views can be compared.
+PVT_API pvtStatus pvtMeasureOcclusion(pvtContext* context, const pvtViewSet* views,
+                                      const pvtBox3* bounds, int size, const pvtMesh* mesh,
+                                      double* measure);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// Exact Euclidean distance transform of small bit masks.
+//
+// Separable, after Saito and Toriwaki, New Algorithms for Euclidean Distance Transformation of an
+// n-Dimensional Digitized Picture, 1994. The first pass counts along columns, all columns of a row
+// at once. The second takes min over dx of column(x ± dx)² + dx², also for a whole block of pixels
+// at once, and ends when dx² reaches the largest value left. Everything is an integer, so that any
+// vector width gives the same result. The paper floods on the GPU instead (Rong and Tan, 2006).
+#include "distance.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    BLOCK = 32,                  // pixels relaxed together
+    PAD = PVT_MAX_MASK_SIZE / 2, // the farthest that a clear pixel can be
+};
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define VECTOR_CLONES
+#endif
+
+size_t pvtGetDistanceTableCount(int size)
+{
+    return (size_t)(size / 2) * (size_t)(size / 2) + 1;
+}
+
+void pvtFillDistanceTable(int size, double exponent, uint32_t* table)
+{
+    const size_t count = pvtGetDistanceTableCount(size);
+    table[0] = 0;
+    for (size_t squared = 1; squared < count; ++squared) {
+        table[squared] = (uint32_t)lrint(256.0 * pow((double)squared, 0.5 * exponent));
+    }
+}
+
+// Eight bits to eight bytes of 0 or 255.
+static uint64_t SpreadBits(uint64_t bits)
+{
+    const uint64_t ones = UINT64_C(0x0101010101010101);
+    const uint64_t picked = (bits * ones) & UINT64_C(0x8040201008040201);
+    // A byte that is not 0 carries into its top bit.
+    const uint64_t top =
+        ((picked & UINT64_C(0x7f7f7f7f7f7f7f7f)) + UINT64_C(0x7f7f7f7f7f7f7f7f)) | picked;
+    return ((top >> 7) & ones) * 255;
+}
+
+VECTOR_CLONES
+static void CountDown(uint8_t* restrict row, const uint8_t* restrict above, int size)
+{
+    for (int x = 0; x < size; ++x) {
+        row[x] = (uint8_t)((above[x] + 1) & row[x]);
+    }
+}
+
+VECTOR_CLONES
+static void CountUp(uint8_t* restrict row, const uint8_t* restrict below, int size)
+{
+    for (int x = 0; x < size; ++x) {
+        const uint8_t next = (uint8_t)(below[x] + 1);
+        row[x] = next < row[x] ? next : row[x];
+    }
+}
+
+void pvtTransformMaskColumns(const uint64_t* rows, int size, uint8_t* columns)
+{
+    assert(size == 64 || size == 128 || size == 256);
+    const uint8_t clear[PVT_MAX_MASK_SIZE] = {0};
+    const size_t words = (size_t)size / 64;
+    const uint8_t* above = clear;
+    for (int y = 0; y < size; ++y) {
+        uint8_t* row = columns + (size_t)y * (size_t)size;
+        for (size_t byte = 0; byte < words * 8; ++byte) {
+            const uint64_t word = rows[(size_t)y * words + byte / 8];
+            const uint64_t spread = SpreadBits((word >> (byte % 8 * 8)) & 255);
+            memcpy(row + byte * 8, &spread, 8);
+        }
+        CountDown(row, above, size);
+        above = row;
+    }
+    const uint8_t* below = clear;
+    for (int y = size - 1; y >= 0; --y) {
+        uint8_t* row = columns + (size_t)y * (size_t)size;
+        CountUp(row, below, size);
+        below = row;
+    }
+}
+
+// Squares with free space around them, so that x ± dx needs no test: outside is clear, hence 0.
+typedef struct SquareRow {
+    int16_t before[PAD];
+    int16_t values[PVT_MAX_MASK_SIZE];
+    int16_t after[PAD];
+} SquareRow;
+
+VECTOR_CLONES
+static void RelaxBlock(const int16_t* squares, int16_t* restrict block)
+{
+    int limit = 0;
+    for (int i = 0; i < BLOCK; ++i) {
+        block[i] = squares[i];
+        limit = block[i] > limit ? block[i] : limit;
+    }
+    for (int dx = 1; dx * dx < limit; ++dx) {
+        const int16_t added = (int16_t)(dx * dx);
+        const int16_t* left = squares - dx;
+        const int16_t* right = squares + dx;
+        for (int i = 0; i < BLOCK; ++i) {
+            const int16_t least = left[i] < right[i] ? left[i] : right[i];
+            const int16_t there = (int16_t)(least + added);
+            block[i] = there < block[i] ? there : block[i];
+        }
+        if ((dx & 3) == 0) {
+            int16_t most = 0;
+            for (int i = 0; i < BLOCK; ++i) {
+                most = block[i] > most ? block[i] : most;
+            }
+            limit = most;
+        }
+    }
+}
+
+static void TransformRow(const uint8_t* columnRow, int size, int16_t* distances)
+{
+    SquareRow squares;
+    memset(&squares, 0, sizeof squares);
+    for (int x = 0; x < size; ++x) {
+        squares.values[x] = (int16_t)(columnRow[x] * columnRow[x]);
+    }
+    // From the start of the struct, so that neighbours in `before` and `after` are within one
+    // array.
+    const int16_t* values = (const int16_t*)&squares + PAD;
+    if (size < PVT_MAX_MASK_SIZE) {
+        memset(squares.values + size, 0, (size_t)(PVT_MAX_MASK_SIZE - size) * sizeof(int16_t));
+    }
+    for (int x = 0; x < size; x += BLOCK) {
+        RelaxBlock(values + x, distances + x);
+    }
+}
+
+static uint64_t SumTable(const int16_t* distances, int size, const uint32_t* table)
+{
+    uint64_t even = 0;
+    uint64_t odd = 0;
+    for (int x = 0; x < size; x += 2) {
+        even += table[distances[x]];
+        odd += table[distances[x + 1]];
+    }
+    return even + odd;
+}
+
+uint64_t pvtSumMaskRow(const uint8_t* columnRow, int size, const uint32_t* table)
+{
+    int16_t distances[PVT_MAX_MASK_SIZE];
+    TransformRow(columnRow, size, distances);
+    return SumTable(distances, size, table);
+}
+
+uint64_t pvtSumDistances(const uint64_t* rows, int size, const uint32_t* table)
+{
+    uint8_t columns[PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE];
+    pvtTransformMaskColumns(rows, size, columns);
+    const size_t words = (size_t)size / 64;
+    uint64_t sum = 0;
+    for (int y = 0; y < size; ++y) {
+        uint64_t any = 0;
+        for (size_t word = 0; word < words; ++word) {
+            any |= rows[(size_t)y * words + word];
+        }
+        if (any != 0) {
+            sum += pvtSumMaskRow(columns + (size_t)y * (size_t)size, size, table);
+        }
+    }
+    return sum;
+}
+
+void pvtTransformDistance(const uint64_t* rows, int size, uint16_t* distances)
+{
+    uint8_t columns[PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE];
+    pvtTransformMaskColumns(rows, size, columns);
+    for (int y = 0; y < size; ++y) {
+        int16_t row[PVT_MAX_MASK_SIZE];
+        TransformRow(columns + (size_t)y * (size_t)size, size, row);
+        for (int x = 0; x < size; ++x) {
+            distances[(size_t)y * (size_t)size + (size_t)x] = (uint16_t)row[x];
+        }
+    }
+}
