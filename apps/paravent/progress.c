@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "progress.h"
+
+#include <string.h>
+#include <time.h>
+
+double pvtGetClock(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+pvtProgress pvtBeginProgress(pvtReport* report)
+{
+    const double now = pvtGetClock();
+    return (pvtProgress){.report = report, .began = now, .shown = now};
+}
+
+// Plain text goes to logs, where a hundred lines of percentages would bury what matters.
+static bool IsDue(const pvtProgress* progress, bool isNewStage, double fraction, double now)
+{
+    switch (progress->report->style) {
+    case PVT_REPORT_BAR:
+        return now - progress->shown >= 0.1;
+    case PVT_REPORT_PLAIN:
+        return now - progress->shown >= (isNewStage ? 1.0 : 5.0);
+    case PVT_REPORT_JSON:
+        return isNewStage || fraction >= 1.0 || now - progress->shown >= 0.1;
+    case PVT_REPORT_NONE:
+        return false;
+    }
+    return false;
+}
+
+void pvtProgress_Update(pvtProgress* progress, const char* stage, double fraction)
+{
+    const bool isNewStage = strncmp(progress->stage, stage, sizeof progress->stage - 1) != 0;
+    if (isNewStage) {
+        (void)snprintf(progress->stage, sizeof progress->stage, "%s", stage);
+    }
+    const double now = pvtGetClock();
+    if (IsDue(progress, isNewStage, fraction, now)) {
+        progress->shown = now;
+        pvtReport_ShowProgress(progress->report, stage, fraction, now - progress->began);
+    }
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// The files that a command is to write, checked before the long work.
+#ifndef PVT_APP_TARGETS_H
+#define PVT_APP_TARGETS_H
+
+#include "run.h"
+
+/// A file that an option names.
+typedef struct pvtTarget {
+    const char* option; ///< "--stats"; null: an input, named so in messages
+    const char* path;   ///< null: not asked for, skipped
+    bool canBeStdout;   ///< "-" is allowed
+} pvtTarget;
+
+/// Fails when two targets are the same file or one of them an input, when "-" makes no sense or is
+/// used twice, when a folder is missing, and when a file cannot be made where a target will be.
+pvtStatus pvtCheckTargets(pvtRun* run, const pvtTarget* targets, size_t count);
+
+/// Whether the path ends like ".png", in any case of letters.
+bool pvtHasEnding(const char* path, const char* ending);
+
+/// The file's name without folders and its last ending, as UTF-8: "meshes/old.bunny.glb" gives
+/// "old.bunny". Bytes that are not UTF-8 become '_'. `name` is never empty.
+void pvtGetStem(const char* path, char* name, size_t size);
+
+#endif
