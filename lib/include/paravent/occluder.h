@@ -34,19 +34,31 @@ typedef enum pvtMethod {
     PVT_METHOD_PAPER,  ///< whole polygons by gain, then single steps back down to the budget
 } pvtMethod;
 
-typedef struct pvtSelectOptions {
-    pvtMethod method;  ///< default PVT_METHOD_PLANAR
-    int budget;        ///< 1 to 65535 triangles; default 64
-    double completion; ///< paper's α as a fraction: stop when a polygon gains less; default 0.01
-} pvtSelectOptions;
-
-/// A candidate: chain `chain` of `chains`, on `plane`.
+/// Chains of candidate polygons: chain c lies on planes[c] of the grid with this frame.
 typedef struct pvtCandidateSet {
     pvtChainSet chains;
     pvtPlane* planes; ///< chains.count
     pvtGridFrame frame;
 } pvtCandidateSet;
 
+typedef struct pvtCandidateOptions {
+    pvtSliceRule rule;       ///< of the slices that contours are traced on; default COVERED
+    int cellsPerVoxel;       ///< 1, 2 or 4; default 1
+    const pvtSlicer* slicer; ///< makes CENTER slices; null: pvtSliceGrid; borrowed; default null
+    double simplification;   ///< [vx] tolerance of Ramer–Douglas–Peucker; 0: none; default 0
+    const pvtSliceVolume* guard; ///< whose COVERED cells a simplification may not leave; borrowed;
+                                 ///< null: the contours' own cells
+    int maxTriangles;            ///< longest link that is kept; default 64
+    double minArea; ///< polygons below this part of the largest slice's area are dropped;
+                    ///< default 0.002
+} pvtCandidateOptions;
+
+PVT_API pvtCandidateOptions pvtDefaultCandidateOptions(void);
+
+/// Sections to chains: contours, bridges, simplification and chains of every section, in order.
+PVT_API pvtStatus pvtBuildCandidates(pvtContext* context, const pvtCandidateOptions* options,
+                                     const pvtSliceVolume* volume, const pvtSectionSet* sections,
+                                     pvtCandidateSet* candidates);
 PVT_API void pvtCandidateSet_Free(pvtContext* context, pvtCandidateSet* set);
 
 /// How many triangles of each candidate are taken; 0: none.
@@ -56,12 +68,30 @@ typedef struct pvtCut {
 } pvtCut;
 
 PVT_API void pvtCut_Free(pvtContext* context, pvtCut* cut);
+
+typedef struct pvtSelectOptions {
+    int budget;              ///< 1 to 65535 triangles; default 64
+    const pvtViewSet* views; ///< borrowed
+    pvtBox3 bounds;          ///< [wu] what the masks span
+    double completion;       ///< paper's α as a fraction: stop when a polygon gains less; default
+                             ///< 0.01; used by pvtReduceOccluder only
+} pvtSelectOptions;
+
 PVT_API pvtSelectOptions pvtDefaultSelectOptions(void);
 
-/// Chooses a cut through all chains that holds the budget and maximises the measure over `views`.
+/// Adds chain levels one after the other, each time the one that gains most of the measure per
+/// triangle, as long as the budget allows.
 PVT_API pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options,
-                                    const pvtViewSet* views, const pvtCandidateSet* candidates,
-                                    pvtCut* cut);
+                                    const pvtCandidateSet* candidates, pvtCut* cut);
+
+/// The paper's way: adds whole polygons by the measure until one gains less than `completion`, then
+/// takes single chain steps back, each losing the least area, until the budget holds.
+PVT_API pvtStatus pvtReduceOccluder(pvtContext* context, const pvtSelectOptions* options,
+                                    const pvtCandidateSet* candidates, pvtCut* cut);
+
+/// The polygons that a cut takes.
+PVT_API pvtStatus pvtTakeCut(pvtContext* context, const pvtCandidateSet* candidates,
+                             const pvtCut* cut, pvtOccluder* occluder);
 
 /// Every polygon of the occluder against the grid, exactly, by code that the optimizer does not
 /// share: `*outside` is the number of clear voxels that some polygon reaches into by more than

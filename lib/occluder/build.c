@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// The whole of it, as a list of steps (Silvennoinen et al., Occluder Simplification using Planar
+// Sections, 2014, section 4).
+#include "base/context.h"
+#include "steps.h"
+
+typedef struct NamedStep {
+    const char* name;
+    pvtBuildStep* run;
+    double* seconds;
+} NamedStep;
+
+pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, const pvtMesh* mesh,
+                           pvtOccluder* occluder, pvtBuildStats* stats)
+{
+    *occluder = (pvtOccluder){0};
+    pvtBuild build = {.options = options, .mesh = mesh};
+    const double started = pvtGetSeconds();
+    const NamedStep steps[] = {
+        // Lengths in voxels and in world units settle each other.
+        {"sizes", pvtResolveSizes, &build.stats.seconds.voxelize},
+        // The soup becomes voxels, whatever its topology: the input is not used after this.
+        {"voxelize", pvtVoxelizeStep, &build.stats.seconds.voxelize},
+        // What a flood from outside does not reach is inside; polygons may lie in part of it.
+        {"solid", pvtFillStep, &build.stats.seconds.solid},
+        // Thousands of planes are tried, and the largest slice of each bin is kept.
+        {"sections", pvtSearchStep, &build.stats.seconds.sections},
+        // Slices become polygons that can be shortened down to one triangle.
+        {"chains", pvtChainStep, &build.stats.seconds.chains},
+        // The cut through all chains that hides most within the budget.
+        {"select", pvtSelectStep, &build.stats.seconds.select},
+        // The promise is checked by other code than that which made it.
+        {"check", pvtCheckStep, &build.stats.seconds.check},
+    };
+    pvtStatus status = PVT_OK;
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0] && status == PVT_OK; ++i) {
+        const double before = pvtGetSeconds();
+        pvtBeginStage(context, steps[i].name);
+        status =
+            pvtIsCancelled(context) ? pvtFailCancelled(context) : steps[i].run(context, &build);
+        *steps[i].seconds += pvtGetSeconds() - before;
+        if (status == PVT_OK) {
+            pvtReportProgress(context, 1.0);
+        }
+    }
+    if (status == PVT_OK) {
+        *occluder = build.occluder;
+        build.occluder = (pvtOccluder){0};
+    }
+    pvtBuild_Free(context, &build);
+    build.stats.seconds.total = pvtGetSeconds() - started;
+    if (stats != NULL) {
+        *stats = build.stats;
+    }
+    return status;
+}

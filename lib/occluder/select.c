@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+// A cut through the chains, from nothing up (cf. Silvennoinen et al., Occluder Simplification using
+// Planar Sections, 2014, section 4.5). The paper adds whole polygons and shortens them afterwards.
+// Here a step adds as many links of one chain as gain most of the measure per triangle, so that the
+// budget is spent where it counts from the first triangle on. Gains are evaluated lazily (Minoux,
+// Accelerated Greedy Algorithms, 1978): those of earlier steps order the queue, and only its head
+// is evaluated again.
+#include "select.h"
+#include "base/context.h"
+#include "base/vector.h"
+#include "scorer.h"
+
+#include <math.h>
+#include <paravent/occluder.h>
+#include <string.h>
+
+enum {
+    HEAD = 16, // candidates evaluated at once: fixed, so that threads do not matter
+    MAX_LEVELS = 24,
+    MAX_WORDS = PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64,
+};
+
+// What a candidate offers next.
+typedef struct Offer {
+    double gain; // per triangle; a guess from above until it is evaluated
+    int32_t level;
+    bool fresh; // evaluated against the present cut
+} Offer;
+
+typedef struct Selection {
+    pvtContext* context;
+    const pvtSelectOptions* options;
+    const pvtCandidateSet* candidates;
+    pvtScorer scorer;
+    pvtScoredMaskSet covered;
+    Offer* offers;
+    pvtCut* cut;
+    int left; // triangles of the budget
+    size_t head[HEAD];
+    size_t headCount;
+} Selection;
+
+pvtSelectOptions pvtDefaultSelectOptions(void)
+{
+    return (pvtSelectOptions){.budget = 64, .completion = 0.01};
+}
+
+static int32_t GetMaxTriangles(const pvtChainSet* chains, size_t chain)
+{
+    return (int32_t)(chains->starts[chain + 1] - chains->starts[chain]) - 2;
+}
+
+// The levels worth trying above `present`: all of the next few, then ever fewer.
+static int ListLevels(int32_t present, int32_t most, int32_t levels[MAX_LEVELS])
+{
+    int count = 0;
+    int32_t step = 1;
+    for (int32_t level = present + 1; level <= most && count < MAX_LEVELS; level += step) {
+        levels[count++] = level;
+        if (count >= 4) {
+            step += step / 2 + 1;
+        }
+    }
+    return count;
+}
+
+static double GetGain(const Selection* selection, size_t candidate, int32_t level)
+{
+    const pvtScorer* scorer = &selection->scorer;
+    const pvtPlane* plane = &selection->candidates->planes[candidate];
+    pvtPoint2 points[256];
+    const size_t count =
+        pvtChainSet_GetLink(&selection->candidates->chains, candidate, level, points);
+    double gain = 0.0;
+    for (size_t v = 0; v < scorer->viewCount; ++v) {
+        uint64_t rows[MAX_WORDS];
+        const pvtScoredMask* covered = &selection->covered.masks[v];
+        const pvtPlaneProjection projection = pvtProjectPlane(scorer, v, plane);
+        memset(rows, 0, scorer->wordCount * sizeof *rows);
+        pvtDrawSectionPolygon(scorer, &projection, points, count, rows);
+        for (size_t word = 0; word < scorer->wordCount; ++word) {
+            rows[word] |= covered->rows[word];
+        }
+        const uint64_t sum = pvtScoreRows(scorer, covered, rows);
+        gain += scorer->factors[v] * ((double)sum - (double)covered->sum);
+    }
+    return gain;
+}
+
+static void EvaluateHead(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    Selection* selection = taskData;
+    for (size_t i = begin; i < end; ++i) {
+        const size_t candidate = selection->head[i];
+        const int32_t present = selection->cut->triangles[candidate];
+        int32_t most = GetMaxTriangles(&selection->candidates->chains, candidate);
+        most = most - present > selection->left ? present + selection->left : most;
+        most = most > 254 ? 254 : most;
+        int32_t levels[MAX_LEVELS];
+        const int count = ListLevels(present, most, levels);
+        Offer best = {.gain = 0.0, .level = present, .fresh = true};
+        for (int l = 0; l < count && !pvtIsCancelled(selection->context); ++l) {
+            const double gain = GetGain(selection, candidate, levels[l]) / (levels[l] - present);
+            if (gain > best.gain) {
+                best.gain = gain;
+                best.level = levels[l];
+            }
+        }
+        selection->offers[candidate] = best;
+    }
+}
+
+// The best offers by what is known of them, best first; ties by index.
+static void CollectHead(Selection* selection)
+{
+    selection->headCount = 0;
+    for (size_t c = 0; c < selection->cut->count; ++c) {
+        const double gain = selection->offers[c].gain;
+        if (gain <= 0.0) {
+            continue;
+        }
+        size_t at = selection->headCount;
+        while (at > 0 && selection->offers[selection->head[at - 1]].gain < gain) {
+            --at;
+        }
+        if (at == HEAD) {
+            continue;
+        }
+        selection->headCount += selection->headCount < HEAD ? 1 : 0;
+        for (size_t i = selection->headCount - 1; i > at; --i) {
+            selection->head[i] = selection->head[i - 1];
+        }
+        selection->head[at] = c;
+    }
+}
+
+static void Accept(Selection* selection, size_t candidate)
+{
+    const Offer* offer = &selection->offers[candidate];
+    const pvtScorer* scorer = &selection->scorer;
+    selection->left -= offer->level - selection->cut->triangles[candidate];
+    selection->cut->triangles[candidate] = offer->level;
+    pvtPoint2 points[256];
+    const size_t count =
+        pvtChainSet_GetLink(&selection->candidates->chains, candidate, offer->level, points);
+    for (size_t v = 0; v < scorer->viewCount; ++v) {
+        uint64_t rows[MAX_WORDS];
+        pvtScoredMask* covered = &selection->covered.masks[v];
+        const pvtPlaneProjection projection =
+            pvtProjectPlane(scorer, v, &selection->candidates->planes[candidate]);
+        memset(rows, 0, scorer->wordCount * sizeof *rows);
+        pvtDrawSectionPolygon(scorer, &projection, points, count, rows);
+        for (size_t word = 0; word < scorer->wordCount; ++word) {
+            rows[word] |= covered->rows[word];
+        }
+        pvtScoredMask_Assign(scorer, covered, rows);
+    }
+    // The best chain may have more to offer; all others know only what they would have gained
+    // before.
+    for (size_t c = 0; c < selection->cut->count; ++c) {
+        selection->offers[c].fresh = false;
+    }
+    selection->offers[candidate].gain = HUGE_VAL;
+}
+
+// From above: the measure of a disc of the link's area, seen from every view.
+static void GuessOffers(Selection* selection)
+{
+    const pvtChainSet* chains = &selection->candidates->chains;
+    for (size_t c = 0; c < chains->count; ++c) {
+        const pvtPlane* plane = &selection->candidates->planes[c];
+        const pvtVec3 normal = pvtPlane_GetNormal(plane);
+        double seen = 0.0;
+        for (size_t v = 0; v < selection->options->views->count; ++v) {
+            const pvtView* view = &selection->options->views->views[v];
+            seen += view->weight * pow(fabs(pvtDot(normal, view->direction)), 1.5);
+        }
+        const double voxel = selection->candidates->frame.voxelSize / (1 << PVT_POINT_BITS);
+        int32_t levels[MAX_LEVELS];
+        int32_t most = GetMaxTriangles(chains, c);
+        most = most > selection->left ? selection->left : most;
+        const int count = ListLevels(0, most > 254 ? 254 : most, levels);
+        for (int l = 0; l < count; ++l) {
+            pvtPoint2 points[256];
+            const size_t n = pvtChainSet_GetLink(chains, c, levels[l], points);
+            const double area = 0.5 * (double)pvtGetLoopArea2(points, n) * voxel * voxel *
+                                pvtPlane_GetAreaScale(plane);
+            const double gain = seen * pow(area, 1.5) / (3.0 * sqrt(3.14159265358979323846));
+            if (gain / levels[l] > selection->offers[c].gain) {
+                selection->offers[c] = (Offer){gain / levels[l], levels[l], false};
+            }
+        }
+    }
+}
+
+static pvtStatus RunSelection(Selection* selection)
+{
+    pvtContext* context = selection->context;
+    const int budget = selection->options->budget;
+    GuessOffers(selection);
+    while (selection->left > 0) {
+        CollectHead(selection);
+        if (selection->headCount == 0) {
+            break;
+        }
+        const size_t best = selection->head[0];
+        if (selection->offers[best].fresh &&
+            selection->offers[best].level - selection->cut->triangles[best] <= selection->left) {
+            Accept(selection, best);
+            pvtReportProgress(context, 1.0 - (double)selection->left / budget);
+            continue;
+        }
+        pvtParallelFor(context, EvaluateHead, selection->headCount, 1, selection);
+        if (pvtIsCancelled(context)) {
+            return pvtFailCancelled(context);
+        }
+    }
+    return PVT_OK;
+}
+
+pvtStatus pvtCheckSelectOptions(pvtContext* context, const pvtSelectOptions* options)
+{
+    if (options->budget < 1 || options->budget > 65535) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT,
+                       "budget of %d triangles; 1 to 65535 are possible", options->budget);
+    }
+    return PVT_OK;
+}
+
+pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options,
+                            const pvtCandidateSet* candidates, pvtCut* cut)
+{
+    *cut = (pvtCut){0};
+    if (pvtCheckSelectOptions(context, options) != PVT_OK) {
+        return pvtContext_GetStatus(context);
+    }
+    Selection selection = {.context = context,
+                           .options = options,
+                           .candidates = candidates,
+                           .cut = cut,
+                           .left = options->budget};
+    const pvtScorerOptions scorer = {
+        .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1.0};
+    pvtStatus status = pvtCreateScorer(context, &scorer, &candidates->frame, &selection.scorer);
+    if (status == PVT_OK) {
+        status = pvtCreateScoredMasks(context, &selection.scorer, &selection.covered);
+    }
+    if (status == PVT_OK) {
+        cut->triangles = pvtAllocate(context, candidates->chains.count, sizeof *cut->triangles);
+        cut->count = candidates->chains.count;
+        selection.offers = pvtAllocate(context, candidates->chains.count, sizeof *selection.offers);
+        status = cut->triangles == NULL || selection.offers == NULL ? pvtContext_GetStatus(context)
+                                                                    : RunSelection(&selection);
+    }
+    pvtRelease(context, selection.offers);
+    pvtScoredMaskSet_Free(context, &selection.covered);
+    pvtScorer_Free(context, &selection.scorer);
+    if (status != PVT_OK) {
+        pvtCut_Free(context, cut);
+    }
+    return status;
+}

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: MIT
+#include "steps.h"
+
+#include "base/context.h"
+#include "base/vector.h"
+#include "ceiling.h"
+
+#include <math.h>
+
+enum {
+    MIN_RESOLUTION = 8,
+    MAX_RESOLUTION = 2048,
+    MEASURE_SIZE = 64,
+};
+
+static const double SQRT3 = 1.7320508075688772;
+
+pvtBuildOptions pvtDefaultBuildOptions(void)
+{
+    return (pvtBuildOptions){.budget = 64,
+                             .resolution = 256,
+                             .up = PVT_AXIS_Y,
+                             .enclosed = -1,
+                             .method = PVT_METHOD_PLANAR,
+                             .views = pvtDefaultViewOptions(),
+                             .seed = 1};
+}
+
+void pvtBuild_Free(pvtContext* context, pvtBuild* build)
+{
+    if (build->hasSlicer && build->options->releaseSlicer != NULL) {
+        build->options->releaseSlicer(context, build->options->slicerUser, &build->slicer);
+    }
+    pvtBitGrid_Free(context, &build->surface);
+    pvtSolid_Free(context, &build->solid);
+    pvtBitGrid_Free(context, &build->allowed);
+    pvtSliceVolume_Free(context, &build->volume);
+    pvtSliceVolume_Free(context, &build->solidVolume);
+    pvtSectionSet_Free(context, &build->sections);
+    pvtCandidateSet_Free(context, &build->candidates);
+    pvtViewSet_Free(context, &build->views);
+    pvtOccluder_Free(context, &build->occluder);
+}
+
+static double ToWorld(pvtLength length, double voxelSize)
+{
+    return length.inVoxels ? length.value * voxelSize : length.value;
+}
+
+static pvtStatus CheckRanges(pvtContext* context, const pvtBuildOptions* options)
+{
+    if (options->budget < 1 || options->budget > 65535) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT,
+                       "budget is %d triangles; it must be 1 to 65535", options->budget);
+    }
+    if (options->error == 0.0 &&
+        (options->resolution < MIN_RESOLUTION || options->resolution > MAX_RESOLUTION)) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT,
+                       "resolution is %d voxels; it must be %d to %d", options->resolution,
+                       MIN_RESOLUTION, MAX_RESOLUTION);
+    }
+    if (!isfinite(options->error) || options->error < 0.0) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT, "the error must be above 0 and finite");
+    }
+    if (!isfinite(options->tolerance.value) || options->tolerance.value < 0.0 ||
+        !isfinite(options->smallestHole.value) || options->smallestHole.value < 0.0) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT,
+                       "tolerance and smallest hole must be finite and not negative");
+    }
+    if (options->enclosed < -1 || options->enclosed > 25) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT, "enclosed is %d; it must be 0 to 25",
+                       options->enclosed);
+    }
+    return PVT_OK;
+}
+
+// error = √3 h + max(tolerance, hole / 2), where each of the two may be given in voxels of size h.
+static double GetVoxelSizeForError(const pvtBuildOptions* options)
+{
+    const double tolerance = options->tolerance.value;
+    const double hole = 0.5 * options->smallestHole.value;
+    const double byTolerance = options->tolerance.inVoxels ? options->error / (SQRT3 + tolerance)
+                                                           : (options->error - tolerance) / SQRT3;
+    const double byHole = options->smallestHole.inVoxels ? options->error / (SQRT3 + hole)
+                                                         : (options->error - hole) / SQRT3;
+    return fmin(byTolerance, byHole);
+}
+
+pvtStatus pvtResolveSizes(pvtContext* context, pvtBuild* build)
+{
+    const pvtBuildOptions* options = build->options;
+    if (CheckRanges(context, options) != PVT_OK) {
+        return pvtContext_GetStatus(context);
+    }
+    const pvtBox3 bounds = pvtMesh_GetBounds(build->mesh);
+    const pvtVec3 extent = pvtSub(bounds.upper, bounds.lower);
+    const double longest = fmax(extent.x, fmax(extent.y, extent.z));
+    if (build->mesh->triangleCount == 0 || !(longest > 0.0)) {
+        return pvtFail(context, PVT_INVALID_INPUT,
+                       "the mesh has no extent: there is nothing to voxelize");
+    }
+    pvtBuildStats* stats = &build->stats;
+    stats->voxelSize = longest / options->resolution;
+    stats->resolution = options->resolution;
+    if (options->error > 0.0) {
+        stats->voxelSize = GetVoxelSizeForError(options);
+        if (!(stats->voxelSize > 0.0)) {
+            return pvtFail(
+                context, PVT_INVALID_ARGUMENT,
+                "the error %g is used up by the tolerance or half the smallest hole; raise "
+                "the error or lower these",
+                options->error);
+        }
+        // An error larger than the object asks for no more than the coarsest grid.
+        stats->voxelSize = fmin(stats->voxelSize, longest / MIN_RESOLUTION);
+        const double resolution = ceil(longest / stats->voxelSize);
+        if (resolution > MAX_RESOLUTION) {
+            return pvtFail(
+                context, PVT_LIMIT,
+                "an error of %g needs %.0f voxels along the longest side; at most %d are "
+                "possible, which reach %g",
+                options->error, resolution, MAX_RESOLUTION,
+                options->error * resolution / MAX_RESOLUTION);
+        }
+        stats->resolution = (int)resolution;
+    }
+    stats->tolerance = ToWorld(options->tolerance, stats->voxelSize);
+    stats->smallestHole = ToWorld(options->smallestHole, stats->voxelSize);
+    stats->errorBound =
+        SQRT3 * stats->voxelSize + fmax(stats->tolerance, 0.5 * stats->smallestHole);
+    return PVT_OK;
+}
+
+pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build)
+{
+    pvtVoxelizeOptions options = pvtDefaultVoxelizeOptions();
+    options.voxelSize = build->stats.voxelSize;
+    options.padding = fmax(build->stats.smallestHole, build->stats.tolerance);
+    return pvtVoxelizeMesh(context, &options, build->mesh, &build->surface);
+}
+
+// The box around the set voxels; false when there are none.
+static bool FindBounds(const pvtBitGrid* grid, pvtBox3* bounds)
+{
+    int low[3] = {grid->frame.size[0], grid->frame.size[1], grid->frame.size[2]};
+    int high[3] = {-1, -1, -1};
+    for (int z = 0; z < grid->frame.size[2]; ++z) {
+        for (int y = 0; y < grid->frame.size[1]; ++y) {
+            const size_t row = ((size_t)z * (size_t)grid->frame.size[1] + (size_t)y);
+            const uint64_t* words = grid->words + row * grid->wordsPerRow;
+            for (size_t w = 0; w < grid->wordsPerRow; ++w) {
+                if (words[w] == 0) {
+                    continue;
+                }
+                const int first = (int)(w * 64) + __builtin_ctzll(words[w]);
+                const int last = (int)(w * 64) + 63 - __builtin_clzll(words[w]);
+                low[0] = first < low[0] ? first : low[0];
+                high[0] = last > high[0] ? last : high[0];
+                low[1] = y < low[1] ? y : low[1];
+                high[1] = y > high[1] ? y : high[1];
+                low[2] = z < low[2] ? z : low[2];
+                high[2] = z;
+            }
+        }
+    }
+    const double h = grid->frame.voxelSize;
+    const pvtVec3 o = grid->frame.origin;
+    bounds->lower = (pvtVec3){o.x + low[0] * h, o.y + low[1] * h, o.z + low[2] * h};
+    bounds->upper =
+        (pvtVec3){o.x + (high[0] + 1) * h, o.y + (high[1] + 1) * h, o.z + (high[2] + 1) * h};
+    return high[0] >= 0;
+}
+
+static pvtStatus FailNothingInside(pvtContext* context, const pvtBuild* build)
+{
+    const double hole = build->stats.suggestedHole;
+    if (hole > 0.0) {
+        return pvtFail(
+            context, PVT_NOTHING_INSIDE,
+            "the mesh has openings, so that nothing is inside at %d voxels; --smallest-hole "
+            "%.3g would close them",
+            build->stats.resolution, hole);
+    }
+    return pvtFail(
+        context, PVT_NOTHING_INSIDE,
+        "the mesh has no inside at %d voxels; a higher --resolution finds thinner solids, "
+        "--smallest-hole D closes openings narrower than D, --ground closes the bottom, "
+        "--terrain fills below a landscape, --tolerance 1vx counts the touched voxels too",
+        build->stats.resolution);
+}
+
+pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
+{
+    const pvtBuildOptions* options = build->options;
+    pvtSolidOptions solid = pvtDefaultSolidOptions();
+    solid.smallestHole = build->stats.smallestHole;
+    solid.ground = options->ground;
+    solid.terrain = options->terrain;
+    solid.up = options->up;
+    solid.enclosed = options->enclosed;
+    pvtStatus status = pvtFillSolid(context, &solid, &build->surface, &build->solid);
+    if (status == PVT_OK) {
+        build->stats.insideFraction = build->solid.insideFraction;
+        status =
+            pvtSuggestSmallestHole(context, &solid, &build->surface, &build->stats.suggestedHole);
+    }
+    if (status == PVT_OK) {
+        pvtBitGrid_Free(context, &build->surface);
+        status =
+            pvtMakeAllowedGrid(context, &build->solid, build->stats.tolerance, &build->allowed);
+    }
+    if (status == PVT_OK && !FindBounds(&build->allowed, &build->bounds)) {
+        status = FailNothingInside(context, build);
+    }
+    if (status == PVT_OK) {
+        status = pvtCreateSliceVolume(context, &build->allowed, &build->volume);
+    }
+    return status;
+}
+
+// A slicer of the caller's works on the closed mesh around the voxels that are sliced.
+static pvtStatus CreateSlicer(pvtContext* context, pvtBuild* build, const pvtBitGrid* grid)
+{
+    if (build->options->createSlicer == NULL) {
+        return PVT_OK;
+    }
+    pvtMesh voxelMesh;
+    pvtStatus status = pvtBuildVoxelMesh(context, grid, &voxelMesh);
+    if (status == PVT_OK) {
+        status = build->options->createSlicer(context, build->options->slicerUser, &grid->frame,
+                                              &voxelMesh, &build->slicer);
+        build->hasSlicer = status == PVT_OK;
+        pvtMesh_Free(context, &voxelMesh);
+    }
+    return status;
+}
+
+static bool IsPaper(const pvtBuild* build)
+{
+    return build->options->method == PVT_METHOD_PAPER;
+}
+
+// What is sliced: the paper slices the solid, and lets simplification stray by the tolerance; the
+// planar method slices the allowed voxels, and never leaves them.
+static const pvtSliceVolume* GetSlicedVolume(const pvtBuild* build)
+{
+    return build->solidVolume.grid != NULL ? &build->solidVolume : &build->volume;
+}
+
+pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
+{
+    pvtStatus status = PVT_OK;
+    if (IsPaper(build) && build->stats.tolerance > 0.0) {
+        status = pvtCreateSliceVolume(context, &build->solid.inside, &build->solidVolume);
+    }
+    const pvtSliceVolume* volume = GetSlicedVolume(build);
+    pvtFaceDirectionSet faces = {0};
+    pvtSectionPlan plan = {0};
+    if (status == PVT_OK) {
+        status = CreateSlicer(context, build, volume->grid);
+    }
+    if (status == PVT_OK) {
+        const pvtFaceDirectionOptions options = pvtDefaultFaceDirectionOptions();
+        status = pvtFindFaceDirections(context, &options, build->mesh, &faces);
+    }
+    if (status == PVT_OK) {
+        pvtPlanOptions options = pvtDefaultPlanOptions();
+        options.faces = IsPaper(build) ? NULL : &faces;
+        options.axes = !IsPaper(build);
+        status = pvtPlanSections(context, &options, volume->grid, &plan);
+    }
+    if (status == PVT_OK) {
+        pvtSearchOptions options = pvtDefaultSearchOptions();
+        options.rule = IsPaper(build) ? PVT_SLICE_CENTER : PVT_SLICE_COVERED;
+        options.slicer = build->hasSlicer ? &build->slicer : NULL;
+        status = pvtSearchSections(context, &options, volume, &plan, &build->sections);
+    }
+    pvtSectionPlan_Free(context, &plan);
+    pvtFaceDirectionSet_Free(context, &faces);
+    return status;
+}
+
+pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build)
+{
+    pvtCandidateOptions options = pvtDefaultCandidateOptions();
+    options.maxTriangles = build->options->budget < 62 ? build->options->budget : 62;
+    if (IsPaper(build)) {
+        options.rule = build->stats.tolerance > 0.0 ? PVT_SLICE_CENTER : PVT_SLICE_COVERED;
+        options.slicer = build->hasSlicer && build->stats.tolerance > 0.0 ? &build->slicer : NULL;
+        options.simplification = build->stats.tolerance / build->stats.voxelSize;
+        options.guard = &build->volume;
+        options.maxTriangles = 65535;
+        options.minArea = 0.0;
+    }
+    pvtStatus status = pvtBuildCandidates(context, &options, GetSlicedVolume(build),
+                                          &build->sections, &build->candidates);
+    build->stats.candidateCount = build->candidates.chains.count;
+    if (status == PVT_OK && build->candidates.chains.count == 0) {
+        status = FailNothingInside(context, build);
+    }
+    return status;
+}
+
+pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
+{
+    pvtViewOptions views = build->options->views;
+    views.up = (int)build->options->up;
+    pvtStatus status = pvtMakeViews(context, &views, &build->views);
+    if (status != PVT_OK) {
+        return status;
+    }
+    pvtSelectOptions options = pvtDefaultSelectOptions();
+    options.budget = build->options->budget;
+    options.views = &build->views;
+    options.bounds = build->bounds;
+    pvtCut cut = {0};
+    status = IsPaper(build) ? pvtReduceOccluder(context, &options, &build->candidates, &cut)
+                            : pvtSelectOccluder(context, &options, &build->candidates, &cut);
+    if (status == PVT_OK) {
+        status = pvtTakeCut(context, &build->candidates, &cut, &build->occluder);
+    }
+    pvtCut_Free(context, &cut);
+    return status;
+}
+
+pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
+{
+    pvtBuildStats* stats = &build->stats;
+    pvtStatus status =
+        pvtCheckOccluder(context, &build->allowed, &build->occluder.mesh, &stats->outside);
+    if (status == PVT_OK) {
+        status = pvtMeasureOcclusion(context, &build->views, &build->bounds, MEASURE_SIZE,
+                                     &build->occluder.mesh, &stats->measure);
+        build->occluder.measure = stats->measure;
+    }
+    if (status == PVT_OK) {
+        status = pvtMeasureGrid(context, &build->views, &build->bounds, MEASURE_SIZE,
+                                &build->allowed, &stats->measureOfSolid);
+    }
+    return status;
+}
