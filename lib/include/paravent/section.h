@@ -55,30 +55,49 @@ PVT_API bool pvtBitmap_Get(const pvtBitmap* bitmap, int x, int y);
 PVT_API void pvtBitmap_Set(pvtBitmap* bitmap, int x, int y, bool value);
 PVT_API uint64_t pvtBitmap_Count(const pvtBitmap* bitmap);
 
-/// A grid made ready for slicing: the grid and a copy whose rows run along y, for planes over x.
+/// The words of a grid for planes over one axis: word w of the row along u at v and at position n
+/// along the axis is words[(v × wordsPerRow + w) × stride + n], so that the few positions that 64
+/// neighbouring cells of a slanted plane look at lie in one or two cache lines.
+typedef struct pvtSliceColumns {
+    uint64_t* words;
+    int32_t (*ranges)[2]; ///< of column v × wordsPerRow + w: no word is set before [0], or from [1]
+    size_t wordsPerRow;
+    size_t stride; ///< [words] a column; those past the axis's size are 0, at least three
+} pvtSliceColumns;
+
+/// A grid made ready for slicing: its words in three more orders.
 typedef struct pvtSliceVolume {
     const pvtBitGrid* grid; ///< borrowed
-    pvtBitGrid turned;      ///< bit y of row (x, z)
+    pvtSliceColumns axes[3];
 } pvtSliceVolume;
 
+/// Takes a little more than three times the grid's memory.
 PVT_API pvtStatus pvtCreateSliceVolume(pvtContext* context, const pvtBitGrid* grid,
                                        pvtSliceVolume* volume);
 PVT_API void pvtSliceVolume_Free(pvtContext* context, pvtSliceVolume* volume);
 
-/// What a cell says.
+/// What a cell says. Both are decided in exact integer arithmetic; voxels outside the grid count as
+/// clear.
 typedef enum pvtSliceRule {
-    PVT_SLICE_CENTER,  ///< the voxel at the cell's centre is set
-    PVT_SLICE_COVERED, ///< every voxel that the plane's closed patch over the cell touches is set
+    /// The voxel at the cell's centre is set. On a face between two voxels (which no planned plane
+    /// meets) the upper one along the axis counts.
+    PVT_SLICE_CENTER,
+    /// Every voxel that the patch touches is set, the patch being the part of the plane over the
+    /// cell: among the voxels of the cell's own column, those whose closed extent along the axis
+    /// meets the patch's closed extent over the closed cell. A patch that just reaches a face
+    /// touches the voxels on both sides of it. Neighbouring columns do not count, although the
+    /// patch's border may run along their sides: the patches of neighbouring cells see to those, so
+    /// that a region of covered cells lies in set voxels up to its own border.
+    PVT_SLICE_COVERED,
 } pvtSliceRule;
 
 /// A slice has cellsPerVoxel (1, 2 or 4) cells a voxel: cell (i, j) covers u from i to i + 1 and
 /// v from j to j + 1, in cells. The bitmap has size[u] × cellsPerVoxel by size[v] × cellsPerVoxel
-/// cells and is created by the caller, so that it can be used again.
+/// cells and is created by the caller, so that it can be used again; all of it is overwritten.
 PVT_API void pvtSliceGrid(const pvtSliceVolume* volume, const pvtPlane* plane, pvtSliceRule rule,
                           int cellsPerVoxel, pvtBitmap* slice);
 
-/// The number of bits that pvtSliceGrid would set, times pvtPlane_GetAreaScale, over
-/// cellsPerVoxel²: the slice's area [vx²].
+/// The number of cells set, times pvtPlane_GetAreaScale, over cellsPerVoxel²: the true area [vx²].
 PVT_API double pvtMeasureSlice(const pvtBitmap* slice, const pvtPlane* plane, int cellsPerVoxel);
 
 /// A place where centre slices are made other than pvtSliceGrid, such as a GPU. `slice` is called

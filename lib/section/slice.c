@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+// Bitmaps of a grid on a plane, 64 cells at a time. See method.md, section 4, and
+// Silvennoinen, Saransaari, Laine, Lehtinen: Occluder Simplification Using Planar Sections, 2014,
+// section 4.2, which slices with the stencil buffer of a GPU instead.
+//
+// Along a row the position of a slanted plane rises by less than a voxel a column, so 64 columns
+// look at 65 positions at most. Each of these positions holds one word, of which a run of
+// neighbouring bits is wanted, and the runs of all positions make up the word that comes out. Where
+// the runs begin depends on the slope, which the whole slice shares, and on the fraction with which
+// the word's first column starts, and even that in 65 ways only: a column's position is one
+// higher exactly when its own fraction and the first column's add up to one or more, so what counts
+// is how many of the columns' fractions do. The masks for each of the ways are made when they are
+// first met.
+#include "base/bits.h"
+
+#include <assert.h>
+#include <paravent/section.h>
+#include <string.h>
+
+enum {
+    COLUMNS = 64,
+    ONE = 1 << PVT_PLANE_BITS,
+    BUCKETS = 256,
+    BUCKET_BITS = PVT_PLANE_BITS - 8,
+    // 64 columns' positions, one more for the carry, and what reading in fours may take beyond.
+    MAX_MASKS = COLUMNS + 4,
+    MAX_SAMPLES = 4,
+};
+
+// What 64 neighbouring columns do under one slope.
+typedef struct SlopeTable {
+    int lowest;                        // position of the lowest column, from the first column's
+    int maskCount;                     // positions looked at
+    uint64_t steps[MAX_MASKS + 1];     // [n + 1]: the columns at lowest + n, without carry
+    uint32_t fractions[COLUMNS + 1];   // of the columns' positions, rising; a sentinel at the end
+    uint64_t carries[COLUMNS + 1];     // [n]: the columns whose fraction is fractions[n] or more
+    uint8_t bucketStarts[BUCKETS + 1]; // first of the fractions in each 1/256
+    bool made[COLUMNS + 1];
+    uint64_t masks[COLUMNS + 1][MAX_MASKS];
+} SlopeTable;
+
+static void SortFractions(SlopeTable* table, const uint32_t fractions[COLUMNS])
+{
+    uint8_t counts[BUCKETS + 1] = {0};
+    for (int i = 0; i < COLUMNS; ++i) {
+        ++counts[fractions[i] >> BUCKET_BITS];
+    }
+    uint8_t next[BUCKETS];
+    uint8_t sum = 0;
+    for (int i = 0; i < BUCKETS; ++i) {
+        table->bucketStarts[i] = next[i] = sum;
+        sum = (uint8_t)(sum + counts[i]);
+    }
+    table->bucketStarts[BUCKETS] = sum;
+    for (int i = 0; i < COLUMNS; ++i) {
+        // Within its bucket a fraction sinks to its place past the larger ones.
+        const int bucket = (int)(fractions[i] >> BUCKET_BITS);
+        int place = next[bucket]++;
+        for (; place > table->bucketStarts[bucket] && table->fractions[place - 1] > fractions[i];
+             --place) {
+            table->fractions[place] = table->fractions[place - 1];
+            table->carries[place] = table->carries[place - 1];
+        }
+        table->fractions[place] = fractions[i];
+        table->carries[place] = UINT64_C(1) << i;
+    }
+    table->fractions[COLUMNS] = UINT32_MAX;
+    table->carries[COLUMNS] = 0;
+    for (int i = COLUMNS - 1; i >= 0; --i) {
+        table->carries[i] |= table->carries[i + 1];
+    }
+}
+
+static void MakeSlopeTable(int32_t slope, SlopeTable* table)
+{
+    uint32_t fractions[COLUMNS];
+    const int last = (slope * (COLUMNS - 1)) >> PVT_PLANE_BITS;
+    table->lowest = last < 0 ? last : 0;
+    table->maskCount = (last < 0 ? -last : last) + 2;
+    memset(table->steps, 0, sizeof table->steps);
+    memset(table->made, 0, sizeof table->made);
+    for (int i = 0; i < COLUMNS; ++i) {
+        const int rise = slope * i;
+        table->steps[(rise >> PVT_PLANE_BITS) - table->lowest + 1] |= UINT64_C(1) << i;
+        fractions[i] = (uint32_t)rise & (ONE - 1);
+    }
+    SortFractions(table, fractions);
+}
+
+static const uint64_t* MakeMasks(SlopeTable* table, int carry)
+{
+    uint64_t* masks = table->masks[carry];
+    const uint64_t carried = table->carries[carry];
+    for (int i = 0; i < MAX_MASKS; ++i) {
+        masks[i] = (table->steps[i + 1] & ~carried) | (table->steps[i] & carried);
+    }
+    table->made[carry] = true;
+    return masks;
+}
+
+// `least` is the smallest fraction, 1 to ONE, whose column carries.
+static inline const uint64_t* FindMasks(SlopeTable* table, uint32_t least)
+{
+    int carry = table->bucketStarts[least >> BUCKET_BITS];
+    while (table->fractions[carry] < least) {
+        ++carry;
+    }
+    return table->made[carry] ? table->masks[carry] : MakeMasks(table, carry);
+}
+
+// Bits of words[n] chosen by masks[n], for n below count. Both may be read, and do not matter, up
+// to the next multiple of four.
+static inline uint64_t CollectBits(const uint64_t* words, const uint64_t* masks, int64_t count)
+{
+    uint64_t a = 0, b = 0, c = 0, d = 0;
+    for (int64_t n = 0; n < count; n += 4) {
+        a |= words[n] & masks[n];
+        b |= words[n + 1] & masks[n + 1];
+        c |= words[n + 2] & masks[n + 2];
+        d |= words[n + 3] & masks[n + 3];
+    }
+    return a | b | c | d;
+}
+
+// A height is a position along the axis in units of 2^-bits voxel.
+typedef struct Slicing {
+    const pvtSliceColumns* columns;
+    SlopeTable* table;
+    int bits;
+    int sampleCount;
+    int64_t samples[MAX_SAMPLES]; // heights at cell (0, 0) whose voxels must be set
+    int64_t stepU, stepV;         // from cell to cell
+    int cellsPerVoxel;
+} Slicing;
+
+// The bits at the heights that start with `height` in the column's first row.
+static inline uint64_t SliceColumn(const Slicing* slicing, size_t column, int64_t height)
+{
+    SlopeTable* table = slicing->table;
+    const int64_t first = (height >> slicing->bits) + table->lowest;
+    const int32_t* range = slicing->columns->ranges[column];
+    const int64_t begin = first > range[0] ? first : range[0];
+    const int64_t stop = first + table->maskCount;
+    const int64_t end = stop < range[1] ? stop : range[1];
+    if (begin >= end) {
+        return 0;
+    }
+    // A column carries when its fraction, brought to `bits`, and this one reach one voxel.
+    const int64_t one = INT64_C(1) << slicing->bits;
+    const int64_t missing = one - (height & (one - 1));
+    const int extra = slicing->bits - PVT_PLANE_BITS;
+    const uint32_t least = (uint32_t)((missing + (INT64_C(1) << extra) - 1) >> extra);
+    const uint64_t* masks = FindMasks(table, least) + (begin - first);
+    const uint64_t* words = slicing->columns->words + column * slicing->columns->stride + begin;
+    return CollectBits(words, masks, end - begin);
+}
+
+// Bit n goes to bit n × cellsPerVoxel.
+static uint64_t SpreadBits(uint64_t bits, int cellsPerVoxel)
+{
+    if (cellsPerVoxel == 2) {
+        bits = (bits | bits << 16) & UINT64_C(0x0000FFFF0000FFFF);
+        bits = (bits | bits << 8) & UINT64_C(0x00FF00FF00FF00FF);
+        bits = (bits | bits << 4) & UINT64_C(0x0F0F0F0F0F0F0F0F);
+        bits = (bits | bits << 2) & UINT64_C(0x3333333333333333);
+        return (bits | bits << 1) & UINT64_C(0x5555555555555555);
+    }
+    bits = (bits | bits << 24) & UINT64_C(0x000000FF000000FF);
+    bits = (bits | bits << 12) & UINT64_C(0x000F000F000F000F);
+    bits = (bits | bits << 6) & UINT64_C(0x0303030303030303);
+    return (bits | bits << 3) & UINT64_C(0x1111111111111111);
+}
+
+// Phase p holds the cells p, p + cellsPerVoxel, ... of word w's columns.
+static void StorePhases(const uint64_t* phases, int cellsPerVoxel, size_t w, size_t wordsPerRow,
+                        uint64_t* row)
+{
+    const int width = COLUMNS / cellsPerVoxel;
+    for (int part = 0; part < cellsPerVoxel; ++part) {
+        const size_t place = w * (size_t)cellsPerVoxel + (size_t)part;
+        if (place >= wordsPerRow) {
+            return;
+        }
+        uint64_t word = 0;
+        for (int phase = 0; phase < cellsPerVoxel; ++phase) {
+            const uint64_t bits = phases[phase] >> (part * width);
+            const uint64_t low = bits & ((UINT64_C(1) << width) - 1);
+            word |= SpreadBits(low, cellsPerVoxel) << phase;
+        }
+        row[place] = word;
+    }
+}
+
+static inline uint64_t SlicePhase(const Slicing* slicing, size_t column, int64_t rise)
+{
+    uint64_t word = SliceColumn(slicing, column, slicing->samples[0] + rise);
+    for (int i = 1; i < slicing->sampleCount && word != 0; ++i) {
+        word &= SliceColumn(slicing, column, slicing->samples[i] + rise);
+    }
+    return word;
+}
+
+static void SliceRow(const Slicing* slicing, int j, size_t wordsPerRow, uint64_t* row)
+{
+    const int cells = slicing->cellsPerVoxel;
+    const size_t columnCount = slicing->columns->wordsPerRow;
+    const size_t column = (size_t)(j / cells) * columnCount;
+    int64_t rise = slicing->stepV * j;
+    for (size_t w = 0; w < columnCount; ++w) {
+        if (cells == 1) {
+            row[w] = SlicePhase(slicing, column + w, rise);
+        } else {
+            uint64_t phases[4] = {0};
+            for (int phase = 0; phase < cells; ++phase) {
+                phases[phase] = SlicePhase(slicing, column + w, rise + slicing->stepU * phase);
+            }
+            StorePhases(phases, cells, w, wordsPerRow, row);
+        }
+        rise += slicing->stepU * cells * COLUMNS;
+    }
+}
+
+// The patch over a cell spans the heights from its lowest corner to its highest. The least
+// fraction below the lowest still touches the voxel below when that corner lies on a face. Between
+// the two, samples no more than a voxel apart miss no voxel.
+static void PlaceSamples(const pvtPlane* plane, pvtSliceRule rule, Slicing* slicing)
+{
+    const int64_t middle =
+        plane->offset * 2 * slicing->cellsPerVoxel + plane->slopeU + plane->slopeV;
+    slicing->samples[0] = middle;
+    slicing->sampleCount = 1;
+    if (rule == PVT_SLICE_COVERED) {
+        const int64_t one = INT64_C(1) << slicing->bits;
+        const int64_t u = plane->slopeU < 0 ? -plane->slopeU : plane->slopeU;
+        const int64_t v = plane->slopeV < 0 ? -plane->slopeV : plane->slopeV;
+        const int64_t span = 2 * (u + v) + 1;
+        const int gaps = (int)((span + one - 1) / one);
+        for (int i = 0; i <= gaps; ++i) {
+            slicing->samples[i] = middle - u - v - 1 + span * i / gaps;
+        }
+        slicing->sampleCount = gaps + 1;
+    }
+}
+
+void pvtSliceGrid(const pvtSliceVolume* volume, const pvtPlane* plane, pvtSliceRule rule,
+                  int cellsPerVoxel, pvtBitmap* slice)
+{
+    assert(cellsPerVoxel == 1 || cellsPerVoxel == 2 || cellsPerVoxel == 4);
+    assert(plane->slopeU >= -ONE && plane->slopeU <= ONE);
+    assert(plane->slopeV >= -ONE && plane->slopeV <= ONE);
+    assert(slice->width == volume->grid->frame.size[pvtPlane_GetU(plane)] * cellsPerVoxel);
+    assert(slice->height == volume->grid->frame.size[pvtPlane_GetV(plane)] * cellsPerVoxel);
+    SlopeTable table;
+    MakeSlopeTable(plane->slopeU, &table);
+    Slicing slicing = {
+        .columns = &volume->axes[plane->axis],
+        .table = &table,
+        .bits = PVT_PLANE_BITS + (cellsPerVoxel == 1   ? 1
+                                  : cellsPerVoxel == 2 ? 2
+                                                       : 3),
+        .stepU = 2 * (int64_t)plane->slopeU,
+        .stepV = 2 * (int64_t)plane->slopeV,
+        .cellsPerVoxel = cellsPerVoxel,
+    };
+    PlaceSamples(plane, rule, &slicing);
+    for (int j = 0; j < slice->height; ++j) {
+        SliceRow(&slicing, j, slice->wordsPerRow, slice->words + (size_t)j * slice->wordsPerRow);
+    }
+}
+
+double pvtMeasureSlice(const pvtBitmap* slice, const pvtPlane* plane, int cellsPerVoxel)
+{
+    return (double)pvtBitmap_Count(slice) * pvtPlane_GetAreaScale(plane) /
+           ((double)cellsPerVoxel * cellsPerVoxel);
+}
