@@ -1,0 +1,17 @@
+# Makes the models anew and compares them with the committed ones, byte for byte.
+file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
+execute_process(COMMAND ${MAKER} ${FOLDER} COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB MADE RELATIVE ${FOLDER} ${FOLDER}/*.glb)
+list(LENGTH MADE COUNT)
+if(NOT COUNT EQUAL 5)
+    message(FATAL_ERROR "five models were expected, not ${COUNT}")
+endif()
+foreach(NAME IN LISTS MADE)
+    execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${FOLDER}/${NAME} ${MODELS}/${NAME}
+        COMMAND_ERROR_IS_FATAL ANY)
+    file(SIZE ${FOLDER}/${NAME} SIZE)
+    if(SIZE GREATER 60000)
+        message(FATAL_ERROR "${NAME} has grown to ${SIZE} bytes; models in the repository stay small")
+    endif()
+endforeach()

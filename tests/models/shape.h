@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Triangles under construction, and a GLB writer that shares nothing with the library it tests.
+#ifndef PVT_TEST_SHAPE_H
+#define PVT_TEST_SHAPE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct Point {
+    double x, y, z; // [m], y up
+} Point;
+
+enum { SHAPE_MAX_POINTS = 8192, SHAPE_MAX_TRIANGLES = 8192, MODEL_MAX_SHAPES = 4 };
+
+/// One node with one mesh. Counter-clockwise from outside.
+typedef struct Shape {
+    const char* name;
+    Point translation; // of the node; the mesh is relative to it
+    float positions[SHAPE_MAX_POINTS][3];
+    uint16_t indices[SHAPE_MAX_TRIANGLES][3];
+    uint32_t pointCount, triangleCount;
+} Shape;
+
+typedef struct Model {
+    Shape shapes[MODEL_MAX_SHAPES];
+    int shapeCount;
+} Model;
+
+Shape* AddShape(Model* model, const char* name, Point translation);
+/// Rounds to 1/4096 m, so that no machine's sine can change a file. Returns the point's index.
+uint32_t AddPoint(Shape* shape, Point point);
+void AddTriangle(Shape* shape, uint32_t a, uint32_t b, uint32_t c);
+void AddQuad(Shape* shape, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
+/// Four points of its own.
+void AddPanel(Shape* shape, Point a, Point b, Point c, Point d);
+/// False when the file cannot be written.
+bool WriteGlb(const Model* model, const char* path);
+
+#endif
