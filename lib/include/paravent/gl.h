@@ -17,10 +17,13 @@ typedef enum pvtGlBackend {
     PVT_GL_OSMESA,
 } pvtGlBackend;
 
-/// An OpenGL 3.3 core context without a window. Use it on the thread that opened it.
+/// An OpenGL 3.3 core context without a window. One thread at a time may use it; no call leaves it
+/// current, so that several of them, of either backend, can live in one process and on one thread.
+/// What a driver allocates is not counted by the pvtContext.
 typedef struct pvtGl pvtGl;
 
-/// PVT_UNSUPPORTED says what to install. Links no GL library: libEGL and libOSMesa are opened here.
+/// PVT_UNSUPPORTED says what to install. Links no GL library: libEGL and libOSMesa are opened here,
+/// and stay open.
 PVT_API pvtStatus pvtOpenGl(pvtContext* context, pvtGlBackend backend, pvtGl** gl);
 /// True when EGL offers real graphics hardware; quick, and opens no context.
 PVT_API bool pvtHasGlHardware(void);
@@ -32,13 +35,17 @@ PVT_API pvtGlBackend pvtGl_GetBackend(const pvtGl* gl);
 
 /// Slices `voxelMesh` (of a grid with this frame, wound outwards) by the near plane: the stencil
 /// counts back faces up and front faces down beyond the plane. Equal to pvtSliceGrid with
-/// PVT_SLICE_CENTER but where a centre lies within 1/512 cell of a voxel's face.
+/// PVT_SLICE_CENTER but where the plane meets a voxel's face within 1/512 cell of the cell's
+/// centre, along u and along v: rasterizers place vertices on a grid of 1/256 pixel.
+/// PVT_INVALID_ARGUMENT when a position is not a voxel's corner. Slices of more cells a side than
+/// the context has pixels are PVT_LIMIT. Release the slicer before its context.
 PVT_API pvtStatus pvtCreateStencilSlicer(pvtContext* context, pvtGl* gl, const pvtGridFrame* frame,
                                          const pvtMesh* voxelMesh, pvtSlicer* slicer);
 PVT_API void pvtReleaseStencilSlicer(pvtContext* context, pvtSlicer* slicer);
 
 /// The mesh's silhouette in a view: pixel (i, j) of the bitmap has its centre at
-/// lower + (i + ½, j + ½) × pixelSize along view->right and view->up; row 0 is the lowest.
+/// lower + (i + ½, j + ½) × pixelSize along view->right and view->up; row 0 is the lowest. The
+/// caller creates the bitmap. Triangles count whichever way they are wound.
 PVT_API pvtStatus pvtRenderSilhouette(pvtContext* context, pvtGl* gl, const pvtMesh* mesh,
                                       const pvtView* view, const double lower[2], double pixelSize,
                                       pvtBitmap* bitmap);

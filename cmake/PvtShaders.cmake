@@ -1,0 +1,23 @@
+# Writes a C file that holds shaders as strings:
+#   cmake -DOUTPUT=shaders.c -DFOLDER=shaders "-DNAMES=slice.vert,one.frag" -P PvtShaders.cmake
+# Bytes rather than string literals, which have a length limit in ISO C.
+string(REPLACE "," ";" NAMES "${NAMES}")
+set(TEXT "#include \"gl/shaders.h\"\n")
+foreach(NAME IN LISTS NAMES)
+    set(SYMBOL pvtShader)
+    string(REGEX MATCHALL "[a-z]+" WORDS "${NAME}")
+    foreach(WORD IN LISTS WORDS)
+        string(SUBSTRING "${WORD}" 0 1 FIRST)
+        string(SUBSTRING "${WORD}" 1 -1 REST)
+        string(TOUPPER "${FIRST}" FIRST)
+        string(APPEND SYMBOL "${FIRST}${REST}")
+    endforeach()
+    file(READ "${FOLDER}/${NAME}" CHARACTERS)
+    if(CHARACTERS MATCHES "[^\n -~]")
+        message(FATAL_ERROR "${FOLDER}/${NAME} holds a character that not every driver's GLSL takes")
+    endif()
+    file(READ "${FOLDER}/${NAME}" BYTES HEX)
+    string(REGEX REPLACE "(..)" "0x\\1," BYTES "${BYTES}")
+    string(APPEND TEXT "const char ${SYMBOL}[] = {${BYTES}0};\n")
+endforeach()
+file(WRITE "${OUTPUT}" "${TEXT}")

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// The files of shaders/ as strings: "slice.vert" is pvtShaderSliceVert. cmake/PvtShaders.cmake
+// writes their definitions at build time.
+#ifndef PVT_GL_SHADERS_H
+#define PVT_GL_SHADERS_H
+
+extern const char pvtShaderOneFrag[];
+extern const char pvtShaderSilhouetteVert[];
+extern const char pvtShaderSliceVert[];
+
+#endif
