@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How good is an occluder: precision, recall, coverage, over-occlusion (paper, section 6.1).
+// How good is an occluder: precision, recall, coverage, over-occlusion (paper, section 6.1). The
+// definitions stand in lib/PIPELINE.md, so that another program can reproduce the numbers.
 #ifndef PARAVENT_EVALUATE_H
 #define PARAVENT_EVALUATE_H
 
@@ -14,18 +15,25 @@ typedef struct pvtEvaluateOptions {
     int quads;     ///< 1 to 10,000,000 quads a view of each family; default 32000
     int pixels;    ///< 16 to 4096 along the longer side of the original's screen box; default 512
     uint64_t seed; ///< default 1
+    const pvtVec3* directions; ///< null: random; else `views` directions to look along, of any
+                               ///< length > 0; borrowed; default null
 } pvtEvaluateOptions;
 
 /// Fractions of 1. Precision is 1 when the occluder hides no quad, recall is 1 when the original
-/// hides none.
+/// hides none. The errors are standard errors of the sampling: over views and quads, or over the
+/// quads alone where the views are given or there is only one.
 typedef struct pvtQuadScore {
     double precision, recall;
+    double precisionError, recallError;
+    uint64_t hidden; ///< [px] Nt: of quads that both hide
+    uint64_t lost;   ///< [px] Pf: of quads that only the original hides
+    uint64_t wrong;  ///< [px] Nf: of quads that only the occluder hides, what the original leaves
 } pvtQuadScore;
 
 typedef struct pvtViewScore {
     pvtVec3 direction;
     pvtQuadScore uniform, small;
-    double coverage;      ///< of the original's pixels
+    double coverage;      ///< of the original's pixels; 1 when it has none
     double overArea;      ///< [wu²] covered by the occluder alone
     double overThickness; ///< [wu] largest distance of such a pixel from the original's silhouette
 } pvtViewScore;
@@ -41,7 +49,7 @@ typedef struct pvtOccluderScore {
 } pvtOccluderScore;
 
 typedef struct pvtEvaluation {
-    pvtEvaluateOptions options;
+    pvtEvaluateOptions options; ///< directions is null here: see the views
     size_t originalTriangleCount;
     pvtOccluderScore* occluders; ///< one for each mesh handed in, same views, same quads
     size_t count;
@@ -49,8 +57,9 @@ typedef struct pvtEvaluation {
 
 PVT_API pvtEvaluateOptions pvtDefaultEvaluateOptions(void);
 
-/// Judges `occluders` against `original`; neither has to be made by this library. A mesh may be
-/// empty. The definitions stand in lib/PIPELINE.md.
+/// Judges `occluders` against `original`; neither has to be made by this library. An occluder may
+/// be empty. PVT_INVALID_INPUT for an original without triangles, and for a triangle that uses a
+/// position that is not there, not finite, or beyond ±10¹⁰⁰.
 PVT_API pvtStatus pvtEvaluateOccluders(pvtContext* context, const pvtEvaluateOptions* options,
                                        const pvtMesh* original, const pvtMesh* occluders,
                                        size_t count, pvtEvaluation* evaluation);
