@@ -10,11 +10,13 @@ enum { LINE_WIDTH = 80, TEXT_COLUMN = 30 };
 void pvtPrintWrapped(FILE* file, const char* text, int indent, int column)
 {
     while (*text != '\0') {
-        const size_t blanks = strspn(text, " ");
+        size_t blanks = strspn(text, " ");
         const size_t length = strcspn(text + blanks, " \n");
         if (column > indent && column + (int)(blanks + length) > LINE_WIDTH) {
             fputc('\n', file);
             column = 0;
+            text += blanks;
+            blanks = 0;
         }
         if (column < indent) {
             fprintf(file, "%*s", indent - column, "");
@@ -52,15 +54,15 @@ static void PrintUse(const pvtOption* option, char* text, size_t size)
     }
 }
 
-// What is behind the help text: the range of a number, and the default.
+// What is behind the help text: the range or unit of a value, and the default.
 static void PrintDetails(const pvtOption* option, const void* defaults, char* text, size_t size)
 {
-    char range[256] = "";
+    char range[128] = "";
     char value[64] = "";
-    const bool isNumber = option->kind != PVT_OPTION_FLAG && option->kind != PVT_OPTION_CHOICE &&
-                          option->kind != PVT_OPTION_TEXT;
-    if (isNumber) {
-        pvtDescribeValue(option, range, sizeof range);
+    if (option->kind == PVT_OPTION_LENGTH) {
+        (void)snprintf(range, sizeof range, "world units, or voxels as in 2vx");
+    } else if (option->kind != PVT_OPTION_SIZE) {
+        pvtDescribeRange(option, range, sizeof range);
     }
     if (option->defaultText != NULL) {
         (void)snprintf(value, sizeof value, "%s", option->defaultText);

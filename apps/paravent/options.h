@@ -55,14 +55,15 @@ enum { PVT_MAX_OPTIONS = 64, PVT_USAGE_TEXT_SIZE = 1024 };
 
 /// What a command line said, besides the fields it filled.
 typedef struct pvtParsedLine {
-    const char** operands; ///< in their order; at least as many entries as the line has words
+    const char**
+        operands; ///< in their order; room for mostOperands or all words, whichever is less
     int operandCount;
     uint64_t given;                    ///< bit i: option i, counted through all groups
     char message[PVT_USAGE_TEXT_SIZE]; ///< what is wrong
 } pvtParsedLine;
 
 /// Reads `count` words into the fields of `values`, which hold the defaults. `operands` of the line
-/// is the caller's, with room for `count`. An option given twice: the last one holds. False with a
+/// is the caller's. An option given twice: the last one holds. False with a
 /// message that names option, value and remedy.
 bool pvtParseLine(const pvtSyntax* syntax, int count, char* const* words, void* values,
                   pvtParsedLine* line);

@@ -131,7 +131,7 @@ static pvtReportStyle ChooseStyle(const pvtCommonOptions* options)
     return canDraw ? PVT_REPORT_BAR : PVT_REPORT_PLAIN;
 }
 
-pvtStatus pvtBeginRun(const pvtCommonOptions* options, pvtRun* run)
+pvtStatus pvtBeginRun(pvtCommonOptions* options, pvtRun* run)
 {
     *run = (pvtRun){0};
     const pvtReportLevel level = options->verbose ? PVT_REPORT_DETAILS
@@ -140,9 +140,12 @@ pvtStatus pvtBeginRun(const pvtCommonOptions* options, pvtRun* run)
     pvtBeginReport(&run->report, stderr, ChooseStyle(options), level);
     run->progress = pvtBeginProgress(&run->report);
     pvtWatchSignals();
+    if (options->memoryLimit == 0) {
+        options->memoryLimit = pvtGetDefaultMemoryLimit();
+    }
     pvtContextDef def = pvtDefaultContextDef();
     def.threadCount = options->threads;
-    def.memoryLimit = options->memoryLimit != 0 ? options->memoryLimit : pvtGetDefaultMemoryLimit();
+    def.memoryLimit = options->memoryLimit;
     def.log = TakeLog;
     def.progress = TakeProgress;
     def.isCancelled = IsCancelled;
@@ -151,6 +154,7 @@ pvtStatus pvtBeginRun(const pvtCommonOptions* options, pvtRun* run)
     if (status != PVT_OK) {
         return pvtRun_Fail(run, status, "the run cannot begin: %s", pvtGetStatusName(status));
     }
+    options->threads = pvtContext_GetThreadCount(run->context);
     return PVT_OK;
 }
 

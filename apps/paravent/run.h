@@ -47,9 +47,9 @@ typedef struct pvtRun {
 bool pvtReadCommandLine(const pvtSyntax* syntax, int count, char* const* words, void* values,
                         pvtParsedLine* line, int* exitCode);
 
-/// Watches the signals and makes the context. `run` must stay where it is until pvtEndRun, which
-/// is due also on failure.
-pvtStatus pvtBeginRun(const pvtCommonOptions* options, pvtRun* run);
+/// Watches the signals and makes the context; what the options leave open is filled in. `run` must
+/// stay where it is until pvtEndRun, which is due also on failure.
+pvtStatus pvtBeginRun(pvtCommonOptions* options, pvtRun* run);
 /// Prints the message of a status that is not PVT_OK, frees, and returns the exit code.
 int pvtEndRun(pvtRun* run, pvtStatus status);
 

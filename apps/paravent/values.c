@@ -213,8 +213,7 @@ static void PrintBound(const pvtOption* option, double value, char text[32])
     }
 }
 
-// ", 1 to 64", ", above 0", ", 0 or more", or nothing.
-static void DescribeRange(const pvtOption* option, char* text, size_t size)
+void pvtDescribeRange(const pvtOption* option, char* text, size_t size)
 {
     text[0] = '\0';
     if (option->least >= option->most) {
@@ -224,12 +223,12 @@ static void DescribeRange(const pvtOption* option, char* text, size_t size)
     char most[32];
     PrintBound(option, option->least, least);
     if (!isfinite(option->most) || option->most >= LARGEST_COUNT) {
-        (void)snprintf(text, size, option->isLeastExcluded ? ", above %s" : ", %s or more", least);
+        (void)snprintf(text, size, option->isLeastExcluded ? "above %s" : "%s or more", least);
         return;
     }
     PrintBound(option, option->most, most);
-    (void)snprintf(text, size, option->isLeastExcluded ? ", above %s up to %s" : ", %s to %s",
-                   least, most);
+    (void)snprintf(text, size, option->isLeastExcluded ? "above %s up to %s" : "%s to %s", least,
+                   most);
 }
 
 static void DescribeChoices(const pvtOption* option, char* text, size_t size)
@@ -245,8 +244,11 @@ static void DescribeChoices(const pvtOption* option, char* text, size_t size)
 
 void pvtDescribeValue(const pvtOption* option, char* text, size_t size)
 {
-    char range[128];
-    DescribeRange(option, range, sizeof range);
+    char range[128] = ", ";
+    pvtDescribeRange(option, range + 2, sizeof range - 2);
+    if (range[2] == '\0') {
+        range[0] = '\0';
+    }
     switch (option->kind) {
     case PVT_OPTION_FLAG:
         (void)snprintf(text, size, "no value");

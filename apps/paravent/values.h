@@ -10,7 +10,10 @@
 bool pvtReadValue(const pvtOption* option, const char* text, void* field, char* message,
                   size_t messageSize);
 
-/// What the option takes: "N, 1 to 65535", "planar or paper".
+/// "1 to 65535", "above 0", "0 or more", or nothing when any value is allowed.
+void pvtDescribeRange(const pvtOption* option, char* text, size_t size);
+
+/// What the option takes: "a whole number, 1 to 65535", "planar or paper".
 void pvtDescribeValue(const pvtOption* option, char* text, size_t size);
 
 /// The field's value as the option would be given it: "64", "2vx", "512M", "planar".
