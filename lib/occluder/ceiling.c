@@ -92,7 +92,7 @@ static void MeasureViews(size_t begin, size_t end, int worker, void* taskData)
             }
         }
         const double sum = (double)pvtSumDistances(rows, task->size, task->table) / 256.0;
-        task->results[v] = frame.weight * sum * pow(frame.pixelSize, 3.0);
+        task->results[v] = frame.weight * sum * frame.pixelSize * frame.pixelSize * frame.pixelSize;
     }
 }
 
@@ -121,7 +121,7 @@ pvtStatus pvtMeasureGrid(pvtContext* context, const pvtViewSet* views, const pvt
         status = pvtContext_GetStatus(context);
     } else {
         ListBorder(grid, splits, points);
-        pvtFillDistanceTable(size, 1.0, table);
+        pvtFillDistanceTable(size, 1, table);
         CeilingTask task = {context, views, bounds, size, points, count, table, results};
         pvtParallelFor(context, MeasureViews, views->count, 1, &task);
         status = pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;

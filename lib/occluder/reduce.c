@@ -158,7 +158,7 @@ pvtStatus pvtReduceOccluder(pvtContext* context, const pvtSelectOptions* options
     const size_t count = candidates->chains.count;
     Reduction reduction = {.context = context, .candidates = candidates, .cut = cut};
     const pvtScorerOptions scorer = {
-        .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1.0};
+        .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1};
     pvtStatus status = pvtCreateScorer(context, &scorer, &candidates->frame, &reduction.scorer);
     if (status == PVT_OK) {
         status = pvtCreateScoredMasks(context, &reduction.scorer, &reduction.covered);

@@ -35,7 +35,10 @@ pvtStatus pvtCreateScorer(pvtContext* context, const pvtScorerOptions* options,
         const pvtView* view = &options->views->views[v];
         scorer->frames[v] = pvtMakeMaskFrame(view, &options->bounds, options->size);
         const double pixel = scorer->frames[v].pixelSize;
-        scorer->factors[v] = view->weight * pow(pixel, 2.0 + options->exponent) / 256.0;
+        scorer->factors[v] = view->weight * pixel * pixel / 256.0;
+        for (int power = 0; power < options->exponent; ++power) {
+            scorer->factors[v] *= pixel;
+        }
     }
     return PVT_OK;
 }

@@ -25,7 +25,7 @@ typedef struct pvtScorerOptions {
     const pvtViewSet* views;
     pvtBox3 bounds;
     int size;
-    double exponent;
+    int exponent;
 } pvtScorerOptions;
 
 pvtStatus pvtCreateScorer(pvtContext* context, const pvtScorerOptions* options,

@@ -174,7 +174,8 @@ static void GuessOffers(Selection* selection)
         double seen = 0.0;
         for (size_t v = 0; v < selection->options->views->count; ++v) {
             const pvtView* view = &selection->options->views->views[v];
-            seen += view->weight * pow(fabs(pvtDot(normal, view->direction)), 1.5);
+            const double facing = fabs(pvtDot(normal, view->direction));
+            seen += view->weight * facing * sqrt(facing);
         }
         const double voxel = selection->candidates->frame.voxelSize / (1 << PVT_POINT_BITS);
         int32_t levels[MAX_LEVELS];
@@ -186,7 +187,7 @@ static void GuessOffers(Selection* selection)
             const size_t n = pvtChainSet_GetLink(chains, c, levels[l], points);
             const double area = 0.5 * (double)pvtGetLoopArea2(points, n) * voxel * voxel *
                                 pvtPlane_GetAreaScale(plane);
-            const double gain = seen * pow(area, 1.5) / (3.0 * sqrt(3.14159265358979323846));
+            const double gain = seen * area * sqrt(area) / (3.0 * sqrt(3.14159265358979323846));
             if (gain / levels[l] > selection->offers[c].gain) {
                 selection->offers[c] = (Offer){gain / levels[l], levels[l], false};
             }
@@ -241,7 +242,7 @@ pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options
                            .cut = cut,
                            .left = options->budget};
     const pvtScorerOptions scorer = {
-        .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1.0};
+        .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1};
     pvtStatus status = pvtCreateScorer(context, &scorer, &candidates->frame, &selection.scorer);
     if (status == PVT_OK) {
         status = pvtCreateScoredMasks(context, &selection.scorer, &selection.covered);

@@ -29,12 +29,17 @@ size_t pvtGetDistanceTableCount(int size)
     return (size_t)(size / 2) * (size_t)(size / 2) + 1;
 }
 
-void pvtFillDistanceTable(int size, double exponent, uint32_t* table)
+void pvtFillDistanceTable(int size, int exponent, uint32_t* table)
 {
+    assert(exponent >= 1 && exponent <= 3);
     const size_t count = pvtGetDistanceTableCount(size);
-    table[0] = 0;
-    for (size_t squared = 1; squared < count; ++squared) {
-        table[squared] = (uint32_t)lrint(256.0 * pow((double)squared, 0.5 * exponent));
+    for (size_t squared = 0; squared < count; ++squared) {
+        // Roots and products only: they are the same on every machine, unlike pow.
+        const double distance = sqrt((double)squared);
+        const double worth = exponent == 1   ? distance
+                             : exponent == 2 ? (double)squared
+                                             : distance * (double)squared;
+        table[squared] = (uint32_t)lrint(256.0 * worth);
     }
 }
 

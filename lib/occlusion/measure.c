@@ -79,7 +79,7 @@ pvtStatus pvtMeasureOcclusion(pvtContext* context, const pvtViewSet* views, cons
     if (table == NULL || masks == NULL || results == NULL) {
         status = pvtContext_GetStatus(context);
     } else {
-        pvtFillDistanceTable(size, 1.0, table);
+        pvtFillDistanceTable(size, 1, table);
         MeasureTask task = {views, bounds, mesh, size, table, masks, results, context};
         pvtParallelFor(context, MeasureViews, views->count, 1, &task);
         status = pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;

@@ -9,8 +9,6 @@
 
 enum { MAX_VIEWS = 4096 };
 
-static const double PI = 3.14159265358979323846;
-
 pvtViewOptions pvtDefaultViewOptions(void)
 {
     return (pvtViewOptions){.count = 64, .up = 1};
@@ -31,17 +29,35 @@ static pvtView MakeView(pvtVec3 direction, double weight)
     return (pvtView){direction, right, pvtCross(right, direction), weight};
 }
 
-// Point `index` of `count` on the half sphere on which coordinate `axis` is negative: looking down.
-static pvtVec3 GetHemispherePoint(int index, int count, int axis)
+// The lattice on the half sphere on which coordinate `axis` is negative: looking down. Each point
+// is the one before it turned by the golden angle, by products only, so that every machine has the
+// same.
+static void FillHemisphere(pvtView* views, size_t count, int axis)
 {
-    const double turn = 2.0 * PI * fmod(0.6180339887498949 * index, 1.0);
-    const double height = (index + 0.5) / count;
-    const double radius = sqrt(1.0 - height * height);
-    pvtVec3 point = {0};
-    pvtSetAxis(&point, axis, -height);
-    pvtSetAxis(&point, (axis + 1) % 3, radius * cos(turn));
-    pvtSetAxis(&point, (axis + 2) % 3, radius * sin(turn));
-    return point;
+    static const double turnX = -0.7373688780783202; // cos and sin of 2π / golden ratio
+    static const double turnY = -0.6754902942615233;
+    double x = 1.0;
+    double y = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        const double height = ((double)i + 0.5) / (double)count;
+        const double radius = sqrt((1.0 - height * height) / (x * x + y * y));
+        pvtVec3 direction = {0};
+        pvtSetAxis(&direction, axis, -height);
+        pvtSetAxis(&direction, (axis + 1) % 3, radius * x);
+        pvtSetAxis(&direction, (axis + 2) % 3, radius * y);
+        views[i] = MakeView(direction, 1.0);
+        const double nextX = x * turnX - y * turnY;
+        y = x * turnY + y * turnX;
+        x = nextX;
+    }
+}
+
+// For people on the ground: the weight of a view falls with the cosine of its elevation, from 1 at
+// the horizon to 0 straight down.
+static double WeighElevation(pvtVec3 direction, int up)
+{
+    const double height = pvtGetAxis(direction, up);
+    return sqrt(fmax(0.0, 1.0 - height * height));
 }
 
 static pvtStatus CheckOptions(pvtContext* context, const pvtViewOptions* options)
@@ -76,19 +92,24 @@ pvtStatus pvtMakeViews(pvtContext* context, const pvtViewOptions* options, pvtVi
     if (views == NULL) {
         return pvtContext_GetStatus(context);
     }
-    // Seen from the ground up to the zenith, or from anywhere: opposite views are mirror images, so
-    // that the half sphere that looks down stands for both.
+    // Opposite views are mirror images, so that the half sphere that looks down stands for both.
     size_t kept = 0;
-    double total = 0.0;
-    for (size_t i = 0; i < count; ++i) {
-        const double weight = options->list != NULL ? options->list[i].weight : 1.0;
-        if (weight > 0.0) {
-            const pvtVec3 direction = options->list != NULL
-                                          ? pvtNormalize(options->list[i].direction)
-                                          : GetHemispherePoint((int)i, (int)count, options->up);
-            views[kept++] = MakeView(direction, weight);
-            total += weight;
+    if (options->list == NULL) {
+        FillHemisphere(views, count, options->up);
+        kept = count;
+    }
+    for (size_t i = 0; i < count && options->list != NULL; ++i) {
+        if (options->list[i].weight > 0.0) {
+            views[kept++] =
+                MakeView(pvtNormalize(options->list[i].direction), options->list[i].weight);
         }
+    }
+    double total = 0.0;
+    for (size_t i = 0; i < kept; ++i) {
+        if (options->list == NULL && options->aboveOnly) {
+            views[i].weight = WeighElevation(views[i].direction, options->up);
+        }
+        total += views[i].weight;
     }
     if (kept == 0) {
         pvtRelease(context, views);

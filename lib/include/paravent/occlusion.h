@@ -47,9 +47,9 @@ PVT_API void pvtViewSet_Free(pvtContext* context, pvtViewSet* set);
 /// Entries of a table over squared distances in a mask of this size: (size / 2)² + 1.
 PVT_API size_t pvtGetDistanceTableCount(int size);
 /// table[d²] = d^exponent × 256, rounded: what a covered pixel is worth whose nearest clear pixel
-/// is d pixels away. An exponent of 1 gives the paper's measure; beams of radius r then count
-/// alike. A higher one weighs wide beams more. Exponents from 0 to 2.
-PVT_API void pvtFillDistanceTable(int size, double exponent, uint32_t* table);
+/// is d pixels away. An exponent of 1 gives the paper's measure, which counts beams of every radius
+/// alike; 2 and 3 weigh wide beams more, by their radius and its square.
+PVT_API void pvtFillDistanceTable(int size, int exponent, uint32_t* table);
 /// Σ table[d²] over the set pixels, d being the Euclidean distance [px] from a pixel's centre to
 /// that of the nearest clear pixel: exact, and the same on every machine. `size` is 64, 128 or 256.
 PVT_API uint64_t pvtSumDistances(const uint64_t* rows, int size, const uint32_t* table);

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "arrangement.h"
+
+#include "base/context.h"
+
+#include <string.h>
+
+enum { MAX_WORDS = PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64, LAYERS = 3 };
+
+void pvtArrangement_Free(pvtContext* context, pvtArrangement* arrangement)
+{
+    for (int slot = 0; slot < arrangement->capacity && arrangement->panels != NULL; ++slot) {
+        pvtRelease(context, arrangement->panels[slot].masks);
+        pvtBitmap_Free(context, &arrangement->panels[slot].cells);
+    }
+    pvtRelease(context, arrangement->panels);
+    pvtRelease(context, arrangement->layers);
+    pvtScoredMaskSet_Free(context, &arrangement->covered);
+    pvtScorer_Free(context, &arrangement->scorer);
+    *arrangement = (pvtArrangement){0};
+}
+
+pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* options,
+                               const pvtSliceVolume* volume, int capacity,
+                               pvtArrangement* arrangement)
+{
+    *arrangement = (pvtArrangement){.volume = volume, .capacity = capacity};
+    const int* size = volume->grid->frame.size;
+    const int longest = size[0] > size[1] ? (size[0] > size[2] ? size[0] : size[2])
+                                          : (size[1] > size[2] ? size[1] : size[2]);
+    arrangement->cellsPerVoxel = longest <= 160 ? 4 : longest <= 640 ? 2 : 1;
+    pvtStatus status =
+        pvtCreateScorer(context, options, &volume->grid->frame, &arrangement->scorer);
+    if (status == PVT_OK) {
+        status = pvtCreateScoredMasks(context, &arrangement->scorer, &arrangement->covered);
+    }
+    if (status == PVT_OK) {
+        const size_t words = arrangement->scorer.viewCount * arrangement->scorer.wordCount;
+        arrangement->panels = pvtAllocate(context, (size_t)capacity, sizeof *arrangement->panels);
+        arrangement->layers = pvtAllocate(context, LAYERS * words, sizeof(uint64_t));
+        if (arrangement->panels == NULL || arrangement->layers == NULL) {
+            status = pvtContext_GetStatus(context);
+        }
+    }
+    if (status != PVT_OK) {
+        pvtArrangement_Free(context, arrangement);
+    }
+    return status;
+}
+
+pvtStatus pvtSliceAllowed(pvtContext* context, const pvtArrangement* arrangement,
+                          const pvtPlane* plane, pvtBitmap* cells)
+{
+    const int* size = arrangement->volume->grid->frame.size;
+    const int scale = arrangement->cellsPerVoxel;
+    const int width = size[pvtPlane_GetU(plane)] * scale;
+    const int height = size[pvtPlane_GetV(plane)] * scale;
+    if (cells->width != width || cells->height != height) {
+        pvtBitmap_Free(context, cells);
+        const pvtStatus status = pvtCreateBitmap(context, width, height, cells);
+        if (status != PVT_OK) {
+            return status;
+        }
+    }
+    pvtSliceGrid(arrangement->volume, plane, PVT_SLICE_COVERED, scale, cells);
+    return PVT_OK;
+}
+
+static void DrawPanel(const pvtArrangement* arrangement, size_t view, const pvtPanel* panel,
+                      uint64_t* rows)
+{
+    const pvtScorer* scorer = &arrangement->scorer;
+    memset(rows, 0, scorer->wordCount * sizeof *rows);
+    if (panel->count >= 3) {
+        const pvtPlaneProjection projection = pvtProjectPlane(scorer, view, &panel->plane);
+        pvtDrawSectionPolygon(scorer, &projection, panel->points, (size_t)panel->count, rows);
+    }
+}
+
+static const uint64_t* GetLayers(const pvtArrangement* arrangement, size_t view)
+{
+    return arrangement->layers + LAYERS * view * arrangement->scorer.wordCount;
+}
+
+// The mask of a view after the change.
+static void ComposeView(const pvtArrangement* arrangement, const pvtChange* change, size_t view,
+                        uint64_t* rows)
+{
+    const size_t words = arrangement->scorer.wordCount;
+    const uint64_t* once = GetLayers(arrangement, view);
+    const uint64_t* twice = once + words;
+    const uint64_t* thrice = twice + words;
+    const uint64_t* first = arrangement->panels[change->slots[0]].masks;
+    first = first != NULL ? first + view * words : NULL;
+    const uint64_t* second = change->count > 1 ? arrangement->panels[change->slots[1]].masks : NULL;
+    second = second != NULL ? second + view * words : NULL;
+    uint64_t drawn[2][MAX_WORDS];
+    for (int i = 0; i < change->count; ++i) {
+        DrawPanel(arrangement, view, &change->panels[i], drawn[i]);
+    }
+    for (size_t w = 0; w < words; ++w) {
+        const uint64_t p = first != NULL ? first[w] : 0;
+        const uint64_t q = second != NULL ? second[w] : 0;
+        // What the others cover: once more than the replaced panels do.
+        uint64_t mask = (~p & ~q & once[w]) | ((p ^ q) & twice[w]) | (p & q & thrice[w]);
+        mask |= drawn[0][w] | (change->count > 1 ? drawn[1][w] : 0);
+        rows[w] = mask;
+    }
+}
+
+void pvtEvaluateChange(const pvtArrangement* arrangement, pvtChange* change)
+{
+    const pvtScorer* scorer = &arrangement->scorer;
+    double value = 0.0;
+    for (size_t v = 0; v < scorer->viewCount; ++v) {
+        uint64_t rows[MAX_WORDS];
+        ComposeView(arrangement, change, v, rows);
+        value +=
+            scorer->factors[v] * (double)pvtScoreRows(scorer, &arrangement->covered.masks[v], rows);
+    }
+    change->value = value;
+}
+
+static void CountLayers(pvtArrangement* arrangement, size_t view)
+{
+    const size_t words = arrangement->scorer.wordCount;
+    uint64_t* once = arrangement->layers + LAYERS * view * words;
+    uint64_t* twice = once + words;
+    uint64_t* thrice = twice + words;
+    memset(once, 0, LAYERS * words * sizeof *once);
+    for (int slot = 0; slot < arrangement->capacity; ++slot) {
+        if (arrangement->panels[slot].panel.count == 0) {
+            continue;
+        }
+        const uint64_t* mask = arrangement->panels[slot].masks + view * words;
+        for (size_t w = 0; w < words; ++w) {
+            thrice[w] |= twice[w] & mask[w];
+            twice[w] |= once[w] & mask[w];
+            once[w] |= mask[w];
+        }
+    }
+}
+
+static bool IsSamePlane(const pvtPlane* a, const pvtPlane* b)
+{
+    return a->axis == b->axis && a->slopeU == b->slopeU && a->slopeV == b->slopeV &&
+           a->offset == b->offset;
+}
+
+static pvtStatus PlacePanel(pvtContext* context, pvtArrangement* arrangement, int slot,
+                            const pvtPanel* panel)
+{
+    pvtPlacedPanel* placed = &arrangement->panels[slot];
+    const pvtScorer* scorer = &arrangement->scorer;
+    if (placed->masks == NULL) {
+        placed->masks =
+            pvtAllocate(context, scorer->viewCount * scorer->wordCount, sizeof *placed->masks);
+        if (placed->masks == NULL) {
+            return pvtContext_GetStatus(context);
+        }
+    }
+    const bool samePlane =
+        placed->panel.count > 0 && IsSamePlane(&placed->panel.plane, &panel->plane);
+    if (panel->count > 0 && !samePlane) {
+        const pvtStatus status =
+            pvtSliceAllowed(context, arrangement, &panel->plane, &placed->cells);
+        if (status != PVT_OK) {
+            return status;
+        }
+    }
+    const int before = placed->panel.count > 0 ? placed->panel.count - 2 : 0;
+    const int after = panel->count > 0 ? panel->count - 2 : 0;
+    arrangement->triangles += after - before;
+    placed->panel = *panel;
+    for (size_t v = 0; v < scorer->viewCount; ++v) {
+        DrawPanel(arrangement, v, panel, placed->masks + v * scorer->wordCount);
+    }
+    return PVT_OK;
+}
+
+pvtStatus pvtApplyChange(pvtContext* context, pvtArrangement* arrangement, const pvtChange* change)
+{
+    for (int i = 0; i < change->count; ++i) {
+        const pvtStatus status =
+            PlacePanel(context, arrangement, change->slots[i], &change->panels[i]);
+        if (status != PVT_OK) {
+            return status;
+        }
+    }
+    const pvtScorer* scorer = &arrangement->scorer;
+    arrangement->value = 0.0;
+    for (size_t v = 0; v < scorer->viewCount; ++v) {
+        CountLayers(arrangement, v);
+        pvtScoredMask* covered = &arrangement->covered.masks[v];
+        const uint64_t* once = GetLayers(arrangement, v);
+        if (memcmp(once, covered->rows, scorer->wordCount * sizeof *once) != 0) {
+            pvtScoredMask_Assign(scorer, covered, once);
+        }
+        arrangement->value += scorer->factors[v] * (double)covered->sum;
+    }
+    return PVT_OK;
+}

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "fit.h"
+
+#include "base/bits.h"
+
+#include <assert.h>
+
+static int64_t Cross(pvtPoint2 o, pvtPoint2 a, pvtPoint2 b)
+{
+    return (int64_t)(a.x - o.x) * (b.y - o.y) - (int64_t)(a.y - o.y) * (b.x - o.x);
+}
+
+static bool IsBetween(int32_t value, int32_t a, int32_t b)
+{
+    return a < b ? a <= value && value <= b : b <= value && value <= a;
+}
+
+static int Sign(int64_t value)
+{
+    return (value > 0) - (value < 0);
+}
+
+static bool IsOnSegment(pvtPoint2 p, pvtPoint2 a, pvtPoint2 b)
+{
+    return Cross(a, b, p) == 0 && IsBetween(p.x, a.x, b.x) && IsBetween(p.y, a.y, b.y);
+}
+
+// Closed segments a–b and c–d have a point in common.
+static bool DoSegmentsMeet(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
+{
+    const int abc = Sign(Cross(a, b, c));
+    const int abd = Sign(Cross(a, b, d));
+    const int cda = Sign(Cross(c, d, a));
+    const int cdb = Sign(Cross(c, d, b));
+    if (abc * abd < 0 && cda * cdb < 0) {
+        return true;
+    }
+    return (abc == 0 && IsOnSegment(c, a, b)) || (abd == 0 && IsOnSegment(d, a, b)) ||
+           (cda == 0 && IsOnSegment(a, c, d)) || (cdb == 0 && IsOnSegment(b, c, d));
+}
+
+// Edge i against all edges that are not its neighbours, and its neighbours for folding back.
+static bool IsEdgeFree(const pvtPoint2* points, size_t count, size_t i)
+{
+    const pvtPoint2 a = points[i];
+    const pvtPoint2 b = points[(i + 1) % count];
+    if (a.x == b.x && a.y == b.y) {
+        return false;
+    }
+    const pvtPoint2 before = points[(i + count - 1) % count];
+    const pvtPoint2 after = points[(i + 2) % count];
+    if (count > 3 && (IsOnSegment(before, a, b) || IsOnSegment(after, a, b) ||
+                      IsOnSegment(b, before, a) || IsOnSegment(a, b, after))) {
+        return false;
+    }
+    for (size_t j = (i + 2) % count; j != (i + count - 1) % count; j = (j + 1) % count) {
+        if (DoSegmentsMeet(a, b, points[j], points[(j + 1) % count])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool pvtIsPointSimple(const pvtPoint2* points, size_t count, size_t index)
+{
+    return pvtGetLoopArea2(points, count) > 0 && IsEdgeFree(points, count, index) &&
+           IsEdgeFree(points, count, (index + count - 1) % count);
+}
+
+bool pvtIsPolygonSimple(const pvtPoint2* points, size_t count)
+{
+    if (count < 3 || pvtGetLoopArea2(points, count) <= 0) {
+        return false;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (!IsEdgeFree(points, count, i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The cells of one row, from floor(low) to ceil(high) − 1 in units of 1 / scale cells, are all set.
+static bool IsSpanSet(const pvtBitmap* cells, int row, int64_t low, int64_t high, int64_t scale)
+{
+    int64_t first = low >= 0 ? low / scale : -1;
+    int64_t end = high > 0 ? (high + scale - 1) / scale : 0;
+    // A span without any width still lies in a cell, unless it runs along a border between two.
+    if (end <= first && low % scale != 0) {
+        end = first + 1;
+    }
+    if (end <= first) {
+        return true;
+    }
+    if (first < 0 || end > cells->width) {
+        return false;
+    }
+    return pvtIsBitRangeSet(cells->words + (size_t)row * cells->wordsPerRow, (size_t)first,
+                            (size_t)end);
+}
+
+// All cells whose interior the open edge passes. Coordinates are multiplied by the edge's height,
+// so that crossings with rows are whole numbers.
+static bool IsEdgeWithin(const pvtBitmap* cells, int32_t unit, pvtPoint2 a, pvtPoint2 b)
+{
+    const pvtPoint2 low = a.y <= b.y ? a : b;
+    const pvtPoint2 high = a.y <= b.y ? b : a;
+    const int64_t height = (int64_t)high.y - low.y;
+    if (height == 0) {
+        // A level edge on a border between rows passes no interior; what is inside is tested by
+        // rows.
+        if (low.y % unit == 0) {
+            return true;
+        }
+        const int row = low.y / unit;
+        const int32_t left = a.x < b.x ? a.x : b.x;
+        const int32_t right = a.x < b.x ? b.x : a.x;
+        return low.y >= 0 && row < cells->height && IsSpanSet(cells, row, left, right, unit);
+    }
+    if (low.y < 0 || high.y > (int64_t)cells->height * unit) {
+        return false;
+    }
+    const int64_t width = (int64_t)high.x - low.x;
+    for (int32_t y = low.y; y < high.y;) {
+        const int row = y / unit;
+        const int32_t next = (row + 1) * unit < high.y ? (row + 1) * unit : high.y;
+        const int64_t from = low.x * height + width * (y - low.y);
+        const int64_t to = low.x * height + width * (next - low.y);
+        if (!IsSpanSet(cells, row, from < to ? from : to, from < to ? to : from, unit * height)) {
+            return false;
+        }
+        y = next;
+    }
+    return true;
+}
+
+static void SortCrossings(double* values, int count)
+{
+    for (int i = 1; i < count; ++i) {
+        const double value = values[i];
+        int j = i;
+        for (; j > 0 && values[j - 1] > value; --j) {
+            values[j] = values[j - 1];
+        }
+        values[j] = value;
+    }
+}
+
+// The cells of a row whose centres are inside. Those at the ends belong to edges as well, so that
+// rounding a crossing does no harm.
+static bool IsRowWithin(const pvtBitmap* cells, int32_t unit, int row, const pvtPoint2* points,
+                        size_t count)
+{
+    const double center = (row + 0.5) * unit;
+    double crossings[PVT_MAX_FIT_POINTS];
+    int found = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const pvtPoint2 a = points[i];
+        const pvtPoint2 b = points[i + 1 < count ? i + 1 : 0];
+        if ((a.y < center) != (b.y < center)) {
+            crossings[found++] = a.x + (center - a.y) * (b.x - a.x) / (double)(b.y - a.y);
+        }
+    }
+    SortCrossings(crossings, found);
+    for (int i = 0; i + 1 < found; i += 2) {
+        const int64_t first = (int64_t)(crossings[i] / unit + 0.5);
+        const int64_t end = (int64_t)(crossings[i + 1] / unit + 0.5);
+        if (!IsSpanSet(cells, row, first, end, 1)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool pvtIsPolygonWithin(const pvtBitmap* cells, int cellsPerVoxel, const pvtPoint2* points,
+                        size_t count)
+{
+    assert(count <= PVT_MAX_FIT_POINTS);
+    const int32_t unit = (1 << PVT_POINT_BITS) / cellsPerVoxel;
+    int32_t low = INT32_MAX;
+    int32_t high = INT32_MIN;
+    for (size_t i = 0; i < count; ++i) {
+        low = points[i].y < low ? points[i].y : low;
+        high = points[i].y > high ? points[i].y : high;
+        if (points[i].x < 0 || points[i].x > (int64_t)cells->width * unit) {
+            return false;
+        }
+    }
+    if (low < 0 || high > (int64_t)cells->height * unit) {
+        return false;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (!IsEdgeWithin(cells, unit, points[i], points[i + 1 < count ? i + 1 : 0])) {
+            return false;
+        }
+    }
+    // Rows whose centre lies between low and high.
+    const int firstRow = (low + unit / 2 - 1) / unit;
+    for (int row = firstRow; row * unit + unit / 2 <= high && row < cells->height; ++row) {
+        if (!IsRowWithin(cells, unit, row, points, count)) {
+            return false;
+        }
+    }
+    return true;
+}
