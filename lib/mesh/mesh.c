@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Making, joining and measuring meshes.
+#include <paravent/mesh.h>
+
+#include "base/context.h"
+#include "base/vector.h"
+
+#include <assert.h>
+#include <string.h>
+
+void pvtMesh_Free(pvtContext* context, pvtMesh* mesh)
+{
+    pvtRelease(context, mesh->positions);
+    pvtRelease(context, mesh->indices);
+    *mesh = (pvtMesh){0};
+}
+
+static pvtStatus CheckPositions(pvtContext* context, const pvtVec3* positions, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        if (!pvtIsFinite3(positions[i])) {
+            return pvtFail(context, PVT_INVALID_INPUT,
+                           "position %zu is (%g, %g, %g); every coordinate must be finite", i,
+                           positions[i].x, positions[i].y, positions[i].z);
+        }
+    }
+    return PVT_OK;
+}
+
+static pvtStatus CheckIndices(pvtContext* context, const uint32_t* indices, size_t triangleCount,
+                              size_t positionCount)
+{
+    for (size_t i = 0; i < 3 * triangleCount; ++i) {
+        if (indices[i] >= positionCount) {
+            return pvtFail(context, PVT_INVALID_INPUT,
+                           "index %u of triangle %zu is out of range: there are %zu positions",
+                           indices[i], i / 3, positionCount);
+        }
+    }
+    return PVT_OK;
+}
+
+static pvtStatus CheckCounts(pvtContext* context, size_t positionCount, size_t triangleCount)
+{
+    if (positionCount > UINT32_MAX || triangleCount > SIZE_MAX / (3 * sizeof(uint32_t))) {
+        return pvtFail(context, PVT_LIMIT,
+                       "%zu positions and %zu triangles are more than 32-bit "
+                       "indices reach",
+                       positionCount, triangleCount);
+    }
+    return PVT_OK;
+}
+
+static pvtStatus AllocateMesh(pvtContext* context, size_t positionCount, size_t triangleCount,
+                              pvtMesh* mesh)
+{
+    *mesh = (pvtMesh){0};
+    mesh->positions = pvtAllocate(context, positionCount, sizeof *mesh->positions);
+    mesh->indices = mesh->positions == NULL
+                        ? NULL
+                        : pvtAllocate(context, 3 * triangleCount, sizeof *mesh->indices);
+    if (mesh->indices == NULL) {
+        pvtMesh_Free(context, mesh);
+        return pvtContext_GetStatus(context);
+    }
+    mesh->positionCount = positionCount;
+    mesh->triangleCount = triangleCount;
+    return PVT_OK;
+}
+
+pvtStatus pvtCreateMesh(pvtContext* context, const pvtVec3* positions, size_t positionCount,
+                        const uint32_t* indices, size_t triangleCount, pvtMesh* mesh)
+{
+    *mesh = (pvtMesh){0};
+    pvtStatus status = CheckCounts(context, positionCount, triangleCount);
+    if (status == PVT_OK && indices == NULL && triangleCount > positionCount / 3) {
+        status = pvtFail(context, PVT_INVALID_INPUT,
+                         "%zu triangles without indices need %zu positions, there are %zu",
+                         triangleCount, 3 * triangleCount, positionCount);
+    }
+    if (status == PVT_OK) {
+        status = CheckPositions(context, positions, positionCount);
+    }
+    if (status == PVT_OK && indices != NULL) {
+        status = CheckIndices(context, indices, triangleCount, positionCount);
+    }
+    if (status == PVT_OK) {
+        status = AllocateMesh(context, positionCount, triangleCount, mesh);
+    }
+    if (status != PVT_OK) {
+        return status;
+    }
+    if (positionCount > 0) {
+        memcpy(mesh->positions, positions, positionCount * sizeof *positions);
+    }
+    for (size_t i = 0; i < 3 * triangleCount; ++i) {
+        mesh->indices[i] = indices != NULL ? indices[i] : (uint32_t)i;
+    }
+    return PVT_OK;
+}
+
+pvtBox3 pvtMesh_GetBounds(const pvtMesh* mesh)
+{
+    pvtBox3 box = {{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
+    if (mesh->triangleCount == 0) {
+        return box;
+    }
+    box.lower = box.upper = mesh->positions[mesh->indices[0]];
+    for (size_t i = 1; i < 3 * mesh->triangleCount; ++i) {
+        assert(mesh->indices[i] < mesh->positionCount);
+        const pvtVec3 p = mesh->positions[mesh->indices[i]];
+        box.lower.x = p.x < box.lower.x ? p.x : box.lower.x;
+        box.lower.y = p.y < box.lower.y ? p.y : box.lower.y;
+        box.lower.z = p.z < box.lower.z ? p.z : box.lower.z;
+        box.upper.x = p.x > box.upper.x ? p.x : box.upper.x;
+        box.upper.y = p.y > box.upper.y ? p.y : box.upper.y;
+        box.upper.z = p.z > box.upper.z ? p.z : box.upper.z;
+    }
+    return box;
+}
+
+// Copies `part` behind what `whole` holds already; the counts say where that ends.
+static void CopyPart(pvtMesh* whole, const pvtMesh* part, size_t position, size_t triangle)
+{
+    if (part->positionCount > 0) {
+        memcpy(whole->positions + position, part->positions,
+               part->positionCount * sizeof *part->positions);
+    }
+    for (size_t i = 0; i < 3 * part->triangleCount; ++i) {
+        whole->indices[3 * triangle + i] = part->indices[i] + (uint32_t)position;
+    }
+}
+
+pvtStatus pvtMesh_Append(pvtContext* context, pvtMesh* mesh, const pvtMesh* other)
+{
+    const size_t positionCount = mesh->positionCount + other->positionCount;
+    const size_t triangleCount = mesh->triangleCount + other->triangleCount;
+    pvtStatus status = CheckCounts(context, positionCount, triangleCount);
+    if (status != PVT_OK) {
+        return status;
+    }
+    pvtMesh whole;
+    status = AllocateMesh(context, positionCount, triangleCount, &whole);
+    if (status != PVT_OK) {
+        return status;
+    }
+    CopyPart(&whole, mesh, 0, 0);
+    CopyPart(&whole, other, mesh->positionCount, mesh->triangleCount);
+    pvtMesh_Free(context, mesh);
+    *mesh = whole;
+    return PVT_OK;
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What the voxel room's own files use of bit grids.
+#ifndef PVT_VOXEL_BIT_GRID_H
+#define PVT_VOXEL_BIT_GRID_H
+
+#include "base/bits.h"
+
+#include <paravent/voxel.h>
+
+/// Most voxels along a side, padding included.
+enum { PVT_MAX_GRID_SIDE = 16384 };
+
+/// Voxels from lower to upper − 1 along each axis.
+typedef struct pvtGridBox {
+    int lower[3], upper[3];
+} pvtGridBox;
+
+/// All bits 0. *grid is empty on failure.
+pvtStatus pvtCreateBitGrid(pvtContext* context, const pvtGridFrame* frame, pvtBitGrid* grid);
+pvtStatus pvtCopyBitGrid(pvtContext* context, const pvtBitGrid* grid, pvtBitGrid* copy);
+/// The smallest box around all set bits; false when there are none.
+bool pvtBitGrid_FindBounds(const pvtBitGrid* grid, pvtGridBox* box);
+
+static inline size_t pvtGetRowIndex(const pvtBitGrid* grid, int y, int z)
+{
+    return (size_t)z * (size_t)grid->frame.size[1] + (size_t)y;
+}
+
+static inline uint64_t* pvtBitGrid_GetRow(const pvtBitGrid* grid, int y, int z)
+{
+    return grid->words + pvtGetRowIndex(grid, y, z) * grid->wordsPerRow;
+}
+
+/// The bits of a row's last word that stand for voxels.
+static inline uint64_t pvtBitGrid_GetTailMask(const pvtBitGrid* grid)
+{
+    return ~UINT64_C(0) >> ((64 - grid->frame.size[0] % 64) % 64);
+}
+
+#endif

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Growing a set of voxels by a ball.
+#ifndef PVT_VOXEL_DILATE_H
+#define PVT_VOXEL_DILATE_H
+
+#include <paravent/voxel.h>
+
+/// The largest squared distance [vx²] that is within `distance` [wu]. A length that was meant as a
+/// whole number of voxels counts as that, rounding aside.
+uint32_t pvtGetSquaredReach(const pvtGridFrame* frame, double distance);
+
+/// Every voxel of the grid whose centre is within √squaredRadius [vx] of the centre of a set one.
+pvtStatus pvtDilateGrid(pvtContext* context, const pvtBitGrid* grid, uint32_t squaredRadius,
+                        pvtBitGrid* dilated);
+
+#endif
