@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shapes.h"
+#include "voxel_shapes.h"
 
 #include <stdlib.h>
 
