@@ -58,7 +58,9 @@ VECTOR_CLONES
 static void CountDown(uint8_t* restrict row, const uint8_t* restrict above, int size)
 {
     for (int x = 0; x < size; ++x) {
-        row[x] = (uint8_t)((above[x] + 1) & row[x]);
+        // 255 stands for more: the other border is nearer then.
+        const int next = above[x] + (above[x] < 255 ? 1 : 0);
+        row[x] = (uint8_t)(next & row[x]);
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include <math.h>
 #include <paravent/base.h>
 #include <stdio.h>
 
@@ -18,6 +19,16 @@
     do {                                                                                           \
         if ((call) != PVT_OK) {                                                                    \
             fail_msg("%s: %s", #call, pvtContext_GetMessage(context));                             \
+        }                                                                                          \
+    } while (0)
+
+/// Fails when two numbers differ by more than `most`; also when one is not a number.
+#define CHECK_NEAR(measured, expected, most)                                                       \
+    do {                                                                                           \
+        const double measured_ = (measured);                                                       \
+        const double expected_ = (expected);                                                       \
+        if (!(fabs(measured_ - expected_) <= (most))) {                                            \
+            fail_msg("%s is %.17g, not %.17g", #measured, measured_, expected_);                   \
         }                                                                                          \
     } while (0)
 
