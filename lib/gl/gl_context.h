@@ -84,7 +84,7 @@ pvtStatus pvtCreateGlTarget(pvtContext* context, pvtGl* gl, const pvtGlTargetDef
                             pvtGlTarget* target);
 void pvtGlTarget_Free(pvtGl* gl, pvtGlTarget* target);
 
-/// Sets the bits of the bytes that are not 0; rows are bitmap->width bytes, the lowest first.
-void pvtPackBitmap(const uint8_t* bytes, pvtBitmap* bitmap);
+/// Sets the bits whose bytes are `value`; rows are bitmap->width bytes, the lowest first.
+void pvtPackBitmap(const uint8_t* bytes, uint8_t value, pvtBitmap* bitmap);
 
 #endif

@@ -100,7 +100,7 @@ static pvtStatus RenderBitmap(pvtContext* context, pvtGl* gl, const pvtMesh* mes
         status = pvtCheckGl(context, gl, "draw a silhouette");
     }
     if (status == PVT_OK) {
-        pvtPackBitmap(bytes, bitmap);
+        pvtPackBitmap(bytes, 255, bitmap);
     }
     pvtGlTarget_Free(gl, &target);
     pvtRelease(context, bytes);

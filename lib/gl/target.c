@@ -96,14 +96,14 @@ void pvtGlTarget_Free(pvtGl* gl, pvtGlTarget* target)
     *target = (pvtGlTarget){0};
 }
 
-void pvtPackBitmap(const uint8_t* bytes, pvtBitmap* bitmap)
+void pvtPackBitmap(const uint8_t* bytes, uint8_t value, pvtBitmap* bitmap)
 {
     for (int y = 0; y < bitmap->height; ++y) {
         const uint8_t* from = bytes + (size_t)y * (size_t)bitmap->width;
         uint64_t* row = bitmap->words + (size_t)y * bitmap->wordsPerRow;
         memset(row, 0, bitmap->wordsPerRow * sizeof *row);
         for (size_t x = 0; x < (size_t)bitmap->width; ++x) {
-            row[x >> 6] |= (uint64_t)(from[x] != 0) << (x & 63);
+            row[x >> 6] |= (uint64_t)(from[x] == value) << (x & 63);
         }
     }
 }

@@ -1,0 +1,461 @@
+// SPDX-License-Identifier: MIT
+// The stencil's slices against a lookup of each cell's centre, and against the CPU slicer.
+#include "check.h"
+
+#include "base/bits.h"
+#include "base/context.h"
+#include "base/random.h"
+
+#include <math.h>
+#include <paravent/gl.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_VOXELS = 48 };
+
+static const pvtGlBackend backends[] = {PVT_GL_EGL, PVT_GL_OSMESA};
+
+typedef bool SolidFcn(double x, double y, double z);
+
+static bool IsInSphere(double x, double y, double z)
+{
+    return x * x + y * y + z * z < 0.9 * 0.9;
+}
+
+static bool IsInTorus(double x, double y, double z)
+{
+    const double ring = sqrt(x * x + z * z) - 0.6;
+    return ring * ring + y * y < 0.3 * 0.3;
+}
+
+// Waves: many pieces, tunnels and hollows.
+static bool IsInWaves(double x, double y, double z)
+{
+    return sin(7 * x + 1) + sin(6 * y + 2 * z) + sin(8 * z) > 0.4 && IsInSphere(x, y, z);
+}
+
+// Every voxel by itself: corners and edges that meet, faces everywhere.
+static bool IsInNoise(double x, double y, double z)
+{
+    pvtRandom random =
+        pvtMakeRandom((uint64_t)((x + 2) * 1e4), (uint64_t)((y + 2) * 1e4 + 1e6 * (z + 2)));
+    return pvtRandom_Below(&random, 3) == 0;
+}
+
+// A grid with three different sides, the solid up to its border.
+static pvtBitGrid MakeGrid(pvtContext* context, SolidFcn* solid, const int size[3])
+{
+    pvtBitGrid grid = {.frame = {{-3.0, 0.7, 12.0}, 0.3, {size[0], size[1], size[2]}}};
+    grid.wordsPerRow = pvtGetWordCount((size_t)size[0]);
+    grid.wordCount = grid.wordsPerRow * (size_t)size[1] * (size_t)size[2];
+    grid.words = pvtAllocate(context, grid.wordCount, sizeof *grid.words);
+    assert_non_null(grid.words);
+    for (int z = 0; z < size[2]; ++z) {
+        for (int y = 0; y < size[1]; ++y) {
+            uint64_t* row = grid.words + (size_t)(z * size[1] + y) * grid.wordsPerRow;
+            for (int x = 0; x < size[0]; ++x) {
+                if (solid((2 * x + 1.0) / size[0] - 1, (2 * y + 1.0) / size[1] - 1,
+                          (2 * z + 1.0) / size[2] - 1)) {
+                    pvtSetBit(row, (size_t)x);
+                }
+            }
+        }
+    }
+    return grid;
+}
+
+static bool IsSet(const pvtBitGrid* grid, const int at[3])
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        if (at[axis] < 0 || at[axis] >= grid->frame.size[axis]) {
+            return false;
+        }
+    }
+    const size_t row = (size_t)(at[2] * grid->frame.size[1] + at[1]) * grid->wordsPerRow;
+    return pvtGetBit(grid->words + row, (size_t)at[0]);
+}
+
+// Four corners of the face between a set voxel and a clear one, wound towards the clear one.
+static void AddFace(pvtMesh* mesh, const pvtGridFrame* frame, const int voxel[3], int axis,
+                    bool upper)
+{
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const uint32_t first = (uint32_t)mesh->positionCount;
+    for (int corner = 0; corner < 4; ++corner) {
+        int at[3] = {voxel[0], voxel[1], voxel[2]};
+        at[axis] += upper;
+        at[u] += corner == 1 || corner == 2;
+        at[v] += corner >= 2;
+        mesh->positions[mesh->positionCount++] = (pvtVec3){
+            frame->origin.x + frame->voxelSize * at[0], frame->origin.y + frame->voxelSize * at[1],
+            frame->origin.z + frame->voxelSize * at[2]};
+    }
+    const uint32_t order[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 1, 2, 0, 2, 3}};
+    for (int i = 0; i < 6; ++i) {
+        mesh->indices[3 * mesh->triangleCount + (size_t)i] = first + order[upper][i];
+    }
+    mesh->triangleCount += 2;
+}
+
+static pvtMesh MakeVoxelMesh(pvtContext* context, const pvtBitGrid* grid)
+{
+    size_t voxels = 0;
+    for (size_t i = 0; i < grid->wordCount; ++i) {
+        voxels += (size_t)pvtCountBits(grid->words[i]);
+    }
+    pvtMesh mesh = {0};
+    mesh.positions = pvtAllocate(context, 24 * voxels, sizeof *mesh.positions);
+    mesh.indices = pvtAllocate(context, 36 * voxels, sizeof *mesh.indices);
+    assert_true(mesh.positions != NULL && mesh.indices != NULL);
+    const int* size = grid->frame.size;
+    for (int i = 0; i < size[0] * size[1] * size[2]; ++i) {
+        const int voxel[3] = {i % size[0], i / size[0] % size[1], i / size[0] / size[1]};
+        for (int side = 0; IsSet(grid, voxel) && side < 6; ++side) {
+            int next[3] = {voxel[0], voxel[1], voxel[2]};
+            next[side / 2] += side % 2 == 1 ? 1 : -1;
+            if (!IsSet(grid, next)) {
+                AddFace(&mesh, &grid->frame, voxel, side / 2, side % 2 == 1);
+            }
+        }
+    }
+    return mesh;
+}
+
+static void FreeMesh(pvtContext* context, pvtMesh* mesh)
+{
+    pvtRelease(context, mesh->positions);
+    pvtRelease(context, mesh->indices);
+}
+
+// Twice cellsPerVoxel times the height of a cell's centre, in 2^-20 voxel: an exact integer.
+static int64_t GetHeight(const pvtPlane* plane, int cellsPerVoxel, int i, int j)
+{
+    return plane->offset * 2 * cellsPerVoxel + (int64_t)plane->slopeU * (2 * i + 1) +
+           (int64_t)plane->slopeV * (2 * j + 1);
+}
+
+static bool LookUpCell(const pvtBitGrid* grid, const pvtPlane* plane, int cellsPerVoxel, int i,
+                       int j)
+{
+    const int64_t voxel = 2 * cellsPerVoxel * (INT64_C(1) << PVT_PLANE_BITS);
+    const int64_t height = GetHeight(plane, cellsPerVoxel, i, j);
+    if (height < 0) {
+        return false;
+    }
+    int at[3];
+    at[plane->axis] = (int)(height / voxel);
+    at[pvtPlane_GetU(plane)] = i / cellsPerVoxel;
+    at[pvtPlane_GetV(plane)] = j / cellsPerVoxel;
+    return IsSet(grid, at);
+}
+
+// The one mismatch that is accepted: within 1/512 cell of the centre along u and v, the plane meets
+// a voxel's face. The allowance is for depths next to −1, which a float rounds to 2^-17 voxel at
+// this size; a plane without slopes has no clipped edges, and is exact.
+static bool IsNextToFace(const pvtPlane* plane, int cellsPerVoxel, int i, int j)
+{
+    const int64_t voxel = 2 * cellsPerVoxel * (INT64_C(1) << PVT_PLANE_BITS);
+    const int64_t height = GetHeight(plane, cellsPerVoxel, i, j);
+    const int64_t above = ((height % voxel) + voxel) % voxel;
+    const int64_t distance = above < voxel - above ? above : voxel - above;
+    const int64_t slopes = llabs((int64_t)plane->slopeU) + llabs((int64_t)plane->slopeV);
+    const int64_t allowance = slopes == 0 ? 0 : voxel >> 17;
+    return distance <= slopes * 2 / 512 + allowance;
+}
+
+// Cells counted over all checks, so that the share of mismatches can be judged too.
+typedef struct Tally {
+    uint64_t cells, set, mismatches;
+} Tally;
+
+static void CompareSlice(const pvtBitGrid* grid, const pvtPlane* plane, int cellsPerVoxel,
+                         const pvtBitmap* slice, Tally* tally)
+{
+    for (int j = 0; j < slice->height; ++j) {
+        for (int i = 0; i < slice->width; ++i) {
+            const bool expected = LookUpCell(grid, plane, cellsPerVoxel, i, j);
+            ++tally->cells;
+            tally->set += expected;
+            if (pvtBitmap_Get(slice, i, j) != expected) {
+                ++tally->mismatches;
+                if (!IsNextToFace(plane, cellsPerVoxel, i, j)) {
+                    fail_msg("axis %d, slopes %d %d, offset %lld, %d cells a voxel: cell (%d, %d) "
+                             "should be %d",
+                             (int)plane->axis, plane->slopeU, plane->slopeV,
+                             (long long)plane->offset, cellsPerVoxel, i, j, expected);
+                }
+            }
+        }
+    }
+}
+
+static void SliceAndCompare(pvtContext* context, const pvtSlicer* slicer, const pvtBitGrid* grid,
+                            const pvtPlane* plane, Tally* tally)
+{
+    for (int cells = 1; cells <= 4; cells *= 2) {
+        pvtBitmap slice;
+        CHECK_OK(context, pvtCreateBitmap(context, grid->frame.size[pvtPlane_GetU(plane)] * cells,
+                                          grid->frame.size[pvtPlane_GetV(plane)] * cells, &slice));
+        CHECK_OK(context, slicer->slice(context, slicer->user, plane, cells, &slice));
+        CompareSlice(grid, plane, cells, &slice, tally);
+        pvtBitmap_Free(context, &slice);
+    }
+}
+
+// Planned planes through the middle half of the grid, and a few of special slopes.
+static pvtPlane MakeTestPlane(const pvtGridFrame* frame, pvtRandom* random, int index)
+{
+    if (index < 9) {
+        // Level, diagonal, and steepest, each axis.
+        const int32_t one = 1 << PVT_PLANE_BITS;
+        const int32_t slopes[3][2] = {{0, 0}, {one, 0}, {one, -one}};
+        const int32_t u = slopes[index / 3][0], v = slopes[index / 3][1];
+        return (pvtPlane){(pvtAxis)(index % 3), u, v, (int64_t)9 * one + 1};
+    }
+    double values[6];
+    for (int i = 0; i < 3; ++i) {
+        values[i] = pvtRandom_Unit(random) - 0.5;
+        values[3 + i] = (0.25 + 0.5 * pvtRandom_Unit(random)) * frame->size[i] * frame->voxelSize;
+    }
+    const pvtVec3 point = {frame->origin.x + values[3], frame->origin.y + values[4],
+                           frame->origin.z + values[5]};
+    return pvtMakePlane(frame, (pvtVec3){values[0], values[1], values[2]}, point);
+}
+
+static void CheckSolid(pvtContext* context, pvtGl* gl, SolidFcn* solid, Tally* tally)
+{
+    const int size[3] = {MAX_VOXELS, 31, 40};
+    pvtBitGrid grid = MakeGrid(context, solid, size);
+    pvtMesh mesh = MakeVoxelMesh(context, &grid);
+    pvtSlicer slicer;
+    CHECK_OK(context, pvtCreateStencilSlicer(context, gl, &grid.frame, &mesh, &slicer));
+    pvtRandom random = pvtMakeRandom(7, 0);
+    for (int i = 0; i < 21; ++i) {
+        const pvtPlane plane = MakeTestPlane(&grid.frame, &random, i);
+        SliceAndCompare(context, &slicer, &grid, &plane, tally);
+    }
+    pvtReleaseStencilSlicer(context, &slicer);
+    FreeMesh(context, &mesh);
+    pvtRelease(context, grid.words);
+}
+
+static void a_slice_holds_the_cells_whose_centres_are_inside(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    SolidFcn* const solids[] = {IsInSphere, IsInTorus, IsInWaves, IsInNoise};
+    for (size_t b = 0; b < 2; ++b) {
+        pvtGl* gl = NULL;
+        CHECK_OK(context, pvtOpenGl(context, backends[b], &gl));
+        Tally tally = {0};
+        for (size_t s = 0; s < sizeof solids / sizeof solids[0]; ++s) {
+            CheckSolid(context, gl, solids[s], &tally);
+        }
+        print_message("%s: %llu of %llu cells differ\n", pvtGl_GetName(gl),
+                      (unsigned long long)tally.mismatches, (unsigned long long)tally.cells);
+        assert_true(tally.set > tally.cells / 10);
+        assert_true(tally.mismatches <= tally.cells / 10000);
+        pvtCloseGl(context, gl);
+    }
+    DestroyTestContext(context);
+}
+
+// The slicers of a test: one on each backend, and the CPU's.
+static void CompareWithCpu(pvtContext* context, const pvtBitGrid* grid, const pvtSlicer slicers[2])
+{
+    pvtSliceVolume volume;
+    CHECK_OK(context, pvtCreateSliceVolume(context, grid, &volume));
+    pvtRandom random = pvtMakeRandom(11, 0);
+    for (int i = 9; i < 30; ++i) {
+        const pvtPlane plane = MakeTestPlane(&grid->frame, &random, i);
+        const int width = grid->frame.size[pvtPlane_GetU(&plane)] * 2;
+        const int height = grid->frame.size[pvtPlane_GetV(&plane)] * 2;
+        pvtBitmap cpu, gpu[2];
+        CHECK_OK(context, pvtCreateBitmap(context, width, height, &cpu));
+        pvtSliceGrid(&volume, &plane, PVT_SLICE_CENTER, 2, &cpu);
+        for (int b = 0; b < 2; ++b) {
+            CHECK_OK(context, pvtCreateBitmap(context, width, height, &gpu[b]));
+            CHECK_OK(context, slicers[b].slice(context, slicers[b].user, &plane, 2, &gpu[b]));
+        }
+        for (int cell = 0; cell < width * height; ++cell) {
+            const int x = cell % width, y = cell / width;
+            const bool expected = pvtBitmap_Get(&cpu, x, y);
+            if ((pvtBitmap_Get(&gpu[0], x, y) != expected ||
+                 pvtBitmap_Get(&gpu[1], x, y) != expected) &&
+                !IsNextToFace(&plane, 2, x, y)) {
+                fail_msg("plane %d: cell (%d, %d) should be %d", i, x, y, expected);
+            }
+        }
+        pvtBitmap_Free(context, &cpu);
+        pvtBitmap_Free(context, &gpu[0]);
+        pvtBitmap_Free(context, &gpu[1]);
+    }
+    pvtSliceVolume_Free(context, &volume);
+}
+
+static void three_slicers_agree(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    const int size[3] = {37, MAX_VOXELS, 33};
+    pvtBitGrid grid = MakeGrid(context, IsInWaves, size);
+    pvtMesh mesh = MakeVoxelMesh(context, &grid);
+    pvtGl* gls[2];
+    pvtSlicer slicers[2];
+    for (int b = 0; b < 2; ++b) {
+        CHECK_OK(context, pvtOpenGl(context, backends[b], &gls[b]));
+        CHECK_OK(context, pvtCreateStencilSlicer(context, gls[b], &grid.frame, &mesh, &slicers[b]));
+    }
+    CompareWithCpu(context, &grid, slicers);
+    for (int b = 0; b < 2; ++b) {
+        pvtReleaseStencilSlicer(context, &slicers[b]);
+        pvtCloseGl(context, gls[b]);
+    }
+    FreeMesh(context, &mesh);
+    pvtRelease(context, grid.words);
+    DestroyTestContext(context);
+}
+
+static void a_plane_past_the_grid_slices_nothing(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtGl* gl = NULL;
+    CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+    const int size[3] = {16, 16, 16};
+    pvtBitGrid grid = MakeGrid(context, IsInNoise, size);
+    pvtMesh mesh = MakeVoxelMesh(context, &grid);
+    pvtSlicer slicer;
+    CHECK_OK(context, pvtCreateStencilSlicer(context, gl, &grid.frame, &mesh, &slicer));
+    pvtBitmap slice;
+    CHECK_OK(context, pvtCreateBitmap(context, 16, 16, &slice));
+    // The last two would come out in the middle of the grid if they were cut to 32 bits.
+    const int64_t middle = (INT64_C(17) << PVT_PLANE_BITS) / 2 + 1;
+    const int64_t offsets[] = {-1, (INT64_C(16) << PVT_PLANE_BITS) + 1, middle - (INT64_C(1) << 52),
+                               middle + (INT64_C(1) << 52)};
+    for (int i = 0; i < 12; ++i) {
+        memset(slice.words, 0xff, slice.wordsPerRow * 16 * sizeof *slice.words);
+        const pvtPlane plane = {(pvtAxis)(i % 3), 0, 0, offsets[i / 3]};
+        CHECK_OK(context, slicer.slice(context, slicer.user, &plane, 1, &slice));
+        assert_int_equal(pvtBitmap_Count(&slice), 0);
+    }
+    pvtBitmap_Free(context, &slice);
+    pvtReleaseStencilSlicer(context, &slicer);
+    FreeMesh(context, &mesh);
+    pvtRelease(context, grid.words);
+    pvtCloseGl(context, gl);
+    DestroyTestContext(context);
+}
+
+static void a_mesh_that_is_not_of_the_grid_is_refused(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtGl* gl = NULL;
+    CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+    const pvtGridFrame frame = {{0, 0, 0}, 1.0, {8, 8, 8}};
+    const pvtVec3 wrong[] = {{0.5, 1, 1}, {-1, 0, 0}, {0, 9, 0}, {0, 0, NAN}};
+    for (size_t i = 0; i < 4; ++i) {
+        pvtVec3 positions[3] = {{0, 0, 0}, {1, 0, 0}, wrong[i]};
+        uint32_t indices[3] = {0, 1, 2};
+        const pvtMesh mesh = {positions, indices, 3, 1};
+        pvtSlicer slicer;
+        assert_int_equal(pvtCreateStencilSlicer(context, gl, &frame, &mesh, &slicer),
+                         PVT_INVALID_ARGUMENT);
+        assert_non_null(strstr(pvtContext_GetMessage(context), "position 2"));
+        pvtReleaseStencilSlicer(context, &slicer); // empty, so that this is safe
+    }
+    pvtCloseGl(context, gl);
+    DestroyTestContext(context);
+}
+
+// Refuses the allocation that it is counting down to.
+static void* AllocateOrRefuse(void* user, size_t size)
+{
+    int* left = user;
+    return (*left)-- == 0 ? NULL : malloc(size);
+}
+
+static void ReleaseBlock(void* user, void* memory)
+{
+    (void)user;
+    free(memory);
+}
+
+// One voxel, sliced through its middle.
+static pvtStatus SliceOneVoxel(pvtContext* context, pvtGl* gl)
+{
+    const pvtGridFrame frame = {{0, 0, 0}, 1.0, {3, 3, 3}};
+    pvtVec3 positions[24];
+    uint32_t indices[36];
+    pvtMesh mesh = {positions, indices, 0, 0};
+    for (int side = 0; side < 6; ++side) {
+        AddFace(&mesh, &frame, (const int[]){1, 1, 1}, side / 2, side % 2 == 1);
+    }
+    pvtSlicer slicer;
+    pvtStatus status = pvtCreateStencilSlicer(context, gl, &frame, &mesh, &slicer);
+    if (status == PVT_OK) {
+        uint64_t rows[3] = {0};
+        pvtBitmap slice = {rows, 3, 3, 1};
+        const pvtPlane plane = {PVT_AXIS_Y, 0, 0, (INT64_C(3) << PVT_PLANE_BITS) / 2};
+        status = slicer.slice(context, slicer.user, &plane, 1, &slice);
+        assert_true(rows[0] == 0 && rows[2] == 0 && rows[1] == (status == PVT_OK ? 2 : 0));
+    }
+    pvtReleaseStencilSlicer(context, &slicer);
+    return status;
+}
+
+static void a_refused_allocation_leaks_nothing(void** state)
+{
+    (void)state;
+    pvtStatus status = PVT_OUT_OF_MEMORY;
+    for (int refused = 0; status != PVT_OK; ++refused) {
+        int left = -1;
+        pvtContextDef def = pvtDefaultContextDef();
+        def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &left};
+        pvtContext* context = NULL;
+        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+        pvtGl* gl = NULL;
+        CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+        left = refused;
+        status = SliceOneVoxel(context, gl);
+        assert_true(status == PVT_OK || status == PVT_OUT_OF_MEMORY);
+        assert_true(refused < 20 && (refused > 0 || status == PVT_OUT_OF_MEMORY));
+        left = -1;
+        pvtCloseGl(context, gl);
+        DestroyTestContext(context);
+    }
+}
+
+static bool AlwaysCancel(void* user)
+{
+    (void)user;
+    return true;
+}
+
+static void a_cancelled_slicer_stops(void** state)
+{
+    (void)state;
+    pvtContextDef def = pvtDefaultContextDef();
+    def.isCancelled = AlwaysCancel;
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtGl* gl = NULL;
+    CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+    assert_int_equal(SliceOneVoxel(context, gl), PVT_CANCELLED);
+    pvtCloseGl(context, gl);
+    DestroyTestContext(context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_slice_holds_the_cells_whose_centres_are_inside),
+        cmocka_unit_test(three_slicers_agree),
+        cmocka_unit_test(a_plane_past_the_grid_slices_nothing),
+        cmocka_unit_test(a_mesh_that_is_not_of_the_grid_is_refused),
+        cmocka_unit_test(a_refused_allocation_leaks_nothing),
+        cmocka_unit_test(a_cancelled_slicer_stops),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
