@@ -23,13 +23,13 @@ typedef struct pvtOption {
     const char* name; ///< without dashes
     char letter;      ///< 'o' for -o; 0: none
     bool isRequired;
+    bool isLeastExcluded;
     pvtOptionKind kind;
     size_t offset;              ///< of the field in the command's options struct
     const char* placeholder;    ///< "N"; unused by flags and choices
     const char* const* choices; ///< null behind the last
     double least, most;         ///< both allowed, checked when least < most
-    bool isLeastExcluded;
-    const char* defaultText; ///< in the help; null: the field's own default; "": none is shown
+    const char* defaultText;    ///< in the help; null: the field's own default; "": none is shown
     const char* help;
 } pvtOption;
 

@@ -20,17 +20,13 @@ pvtProgress pvtBeginProgress(pvtReport* report)
 // Plain text goes to logs, where a hundred lines of percentages would bury what matters.
 static bool IsDue(const pvtProgress* progress, bool isNewStage, double fraction, double now)
 {
-    switch (progress->report->style) {
-    case PVT_REPORT_BAR:
-        return now - progress->shown >= 0.1;
-    case PVT_REPORT_PLAIN:
-        return now - progress->shown >= (isNewStage ? 1.0 : 5.0);
-    case PVT_REPORT_JSON:
-        return isNewStage || fraction >= 1.0 || now - progress->shown >= 0.1;
-    case PVT_REPORT_NONE:
-        return false;
+    const double since = now - progress->shown;
+    if (progress->report->style == PVT_REPORT_PLAIN) {
+        return since >= (isNewStage ? 1.0 : 5.0);
     }
-    return false;
+    // A program that reads along wants to see every stage begin and end.
+    const bool isEdge = isNewStage || fraction >= 1.0;
+    return since >= 0.1 || (isEdge && progress->report->style == PVT_REPORT_JSON);
 }
 
 void pvtProgress_Update(pvtProgress* progress, const char* stage, double fraction)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "values.h"
 
-#include <errno.h>
+#include <assert.h>
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -153,39 +153,43 @@ static bool StoreNumber(const pvtOption* option, double value, void* field)
     return true;
 }
 
+static bool ReadAnyNumber(const pvtOption* option, const char* text, double* value)
+{
+    switch (option->kind) {
+    case PVT_OPTION_DOUBLE:
+        return pvtReadNumber(text, value);
+    case PVT_OPTION_SIZE:
+        return ReadSize(text, value);
+    default:
+        return ReadInteger(text, value);
+    }
+}
+
 static bool ReadField(const pvtOption* option, const char* text, void* field)
 {
     double value = 0.0;
+    pvtLength length = {0};
     switch (option->kind) {
-    case PVT_OPTION_FLAG:
-        return false;
-    case PVT_OPTION_INT:
-    case PVT_OPTION_COUNT:
-        return ReadInteger(text, &value) && StoreNumber(option, value, field);
-    case PVT_OPTION_DOUBLE:
-        return pvtReadNumber(text, &value) && StoreNumber(option, value, field);
-    case PVT_OPTION_SIZE:
-        return ReadSize(text, &value) && StoreNumber(option, value, field);
-    case PVT_OPTION_LENGTH: {
-        pvtLength length = {0};
+    case PVT_OPTION_LENGTH:
         if (!ReadLength(text, &length) || !IsInRange(option, length.value)) {
             return false;
         }
         *(pvtLength*)field = length;
         return true;
-    }
     case PVT_OPTION_CHOICE:
         return ReadChoice(option, text, field);
     case PVT_OPTION_TEXT:
         *(const char**)field = text;
         return true;
+    default:
+        return ReadAnyNumber(option, text, &value) && StoreNumber(option, value, field);
     }
-    return false;
 }
 
 bool pvtReadValue(const pvtOption* option, const char* text, void* field, char* message,
                   size_t messageSize)
 {
+    assert(option->kind != PVT_OPTION_FLAG);
     if (ReadField(option, text, field)) {
         return true;
     }

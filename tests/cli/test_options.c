@@ -21,7 +21,7 @@ typedef struct Values {
 
 static const char* const methods[] = {"planar", "paper", NULL};
 
-#define FIELD(kindName, field) .kind = kindName, .offset = offsetof(Values, field)
+#define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(Values, field)
 
 static const pvtOption table[] = {
     {.name = "ground", FIELD(PVT_OPTION_FLAG, ground), .help = "closed below"},
