@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "check.h"
+
+#include "base/context.h"
+#include "base/random.h"
+#include "occluder/arrangement.h"
+
+#include <string.h>
+
+enum { SIDE = 48, PANELS = 6 };
+
+// A ball that leaves four voxels free on each side.
+static void MakeBall(pvtContext* context, pvtBitGrid* grid)
+{
+    *grid = (pvtBitGrid){.frame = {.voxelSize = 0.25, .size = {SIDE, SIDE, SIDE}},
+                         .wordsPerRow = 1,
+                         .wordCount = SIDE * SIDE};
+    grid->words = pvtAllocate(context, grid->wordCount, sizeof *grid->words);
+    assert_non_null(grid->words);
+    const double middle = SIDE / 2.0;
+    const double radius = middle - 4.0;
+    for (int z = 0; z < SIDE; ++z) {
+        for (int y = 0; y < SIDE; ++y) {
+            for (int x = 0; x < SIDE; ++x) {
+                const double dx = x + 0.5 - middle;
+                const double dy = y + 0.5 - middle;
+                const double dz = z + 0.5 - middle;
+                if (dx * dx + dy * dy + dz * dz < radius * radius) {
+                    grid->words[z * SIDE + y] |= UINT64_C(1) << x;
+                }
+            }
+        }
+    }
+}
+
+static void RollPanel(pvtRandom* random, const pvtGridFrame* frame, pvtPanel* panel)
+{
+    const pvtVec3 direction = {pvtRandom_Unit(random) - 0.5, pvtRandom_Unit(random) - 0.5,
+                               pvtRandom_Unit(random) - 0.5};
+    const double at = (SIDE / 2.0 + pvtRandom_Unit(random)) * frame->voxelSize;
+    panel->plane = pvtMakePlane(frame, direction, (pvtVec3){at, at, at});
+    panel->count = 3 + (int)pvtRandom_Below(random, 2);
+    const int32_t middle = SIDE * 128;
+    static const int ways[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    for (int i = 0; i < panel->count; ++i) {
+        const int32_t reach = (int32_t)pvtRandom_Below(random, 10 * 256) + 256;
+        panel->points[i] = (pvtPoint2){middle + ways[i][0] * reach, middle + ways[i][1] * reach};
+    }
+}
+
+// The value by drawing everything anew.
+static double MeasureFromScratch(const pvtArrangement* arrangement)
+{
+    const pvtScorer* scorer = &arrangement->scorer;
+    double value = 0.0;
+    for (size_t v = 0; v < scorer->viewCount; ++v) {
+        uint64_t rows[64] = {0};
+        for (int slot = 0; slot < arrangement->capacity; ++slot) {
+            const pvtPanel* panel = &arrangement->panels[slot].panel;
+            uint64_t drawn[64] = {0};
+            const pvtPlaneProjection projection = pvtProjectPlane(scorer, v, &panel->plane);
+            pvtDrawSectionPolygon(scorer, &projection, panel->points, (size_t)panel->count, drawn);
+            for (int row = 0; row < 64; ++row) {
+                rows[row] |= drawn[row];
+            }
+        }
+        value += scorer->factors[v] * (double)pvtSumDistances(rows, 64, scorer->table);
+    }
+    return value;
+}
+
+static void the_incremental_value_equals_the_full_one_bit_for_bit(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtBitGrid grid;
+    MakeBall(context, &grid);
+    pvtSliceVolume volume;
+    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
+    pvtViewOptions viewOptions = pvtDefaultViewOptions();
+    viewOptions.count = 12;
+    pvtViewSet views;
+    CHECK_OK(context, pvtMakeViews(context, &viewOptions, &views));
+    const pvtScorerOptions options = {
+        .views = &views, .bounds = {{0, 0, 0}, {12, 12, 12}}, .size = 64, .exponent = 1};
+    pvtArrangement arrangement;
+    CHECK_OK(context, pvtCreateArrangement(context, &options, &volume, PANELS, &arrangement));
+
+    pvtRandom random = pvtMakeRandom(21, 4);
+    for (int step = 0; step < 1500; ++step) {
+        pvtChange change = {.count = 1 + (int)pvtRandom_Below(&random, 2)};
+        change.slots[0] = (int)pvtRandom_Below(&random, PANELS);
+        change.slots[1] = (change.slots[0] + 1) % PANELS;
+        for (int i = 0; i < change.count; ++i) {
+            RollPanel(&random, &grid.frame, &change.panels[i]);
+            if (pvtRandom_Below(&random, 4) == 0) {
+                change.panels[i].count = 0;
+            }
+        }
+        pvtEvaluateChange(&arrangement, &change);
+        CHECK_OK(context, pvtApplyChange(context, &arrangement, &change));
+        assert_true(change.value == arrangement.value);
+        if (step % 50 == 0) {
+            assert_true(arrangement.value == MeasureFromScratch(&arrangement));
+        }
+    }
+    pvtArrangement_Free(context, &arrangement);
+    pvtViewSet_Free(context, &views);
+    pvtSliceVolume_Free(context, &volume);
+    pvtBitGrid_Free(context, &grid);
+    DestroyTestContext(context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_incremental_value_equals_the_full_one_bit_for_bit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
