@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "check.h"
+
+#include "base/context.h"
+#include "base/random.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <paravent/occluder.h>
+
+enum { SIDE = 20 };
+
+// Voxels 4 to 15 along each axis, but for one at `hole` (none when negative).
+static void MakeBlock(pvtContext* context, const int hole[3], pvtBitGrid* grid)
+{
+    *grid = (pvtBitGrid){
+        .frame = {.origin = {-3.0, 1.0, 2.0}, .voxelSize = 0.5, .size = {SIDE, SIDE, SIDE}},
+        .wordsPerRow = 1,
+        .wordCount = SIDE * SIDE};
+    grid->words = pvtAllocate(context, grid->wordCount, sizeof *grid->words);
+    assert_non_null(grid->words);
+    for (int z = 4; z < 16; ++z) {
+        for (int y = 4; y < 16; ++y) {
+            grid->words[z * SIDE + y] = UINT64_C(0xfff0);
+        }
+    }
+    if (hole[0] >= 0) {
+        grid->words[hole[2] * SIDE + hole[1]] &= ~(UINT64_C(1) << hole[0]);
+    }
+}
+
+// One triangle with corners in voxels.
+static uint64_t CountOutside(pvtContext* context, const pvtBitGrid* grid, const pvtVec3 corners[3])
+{
+    pvtVec3 positions[3];
+    for (int c = 0; c < 3; ++c) {
+        positions[c] = pvtAdd(grid->frame.origin, pvtScale(corners[c], grid->frame.voxelSize));
+    }
+    pvtMesh mesh;
+    CHECK_OK(context, pvtCreateMesh(context, positions, 3, NULL, 1, &mesh));
+    uint64_t outside = 0;
+    CHECK_OK(context, pvtCheckOccluder(context, grid, &mesh, &outside));
+    pvtMesh_Free(context, &mesh);
+    return outside;
+}
+
+static void a_planted_hole_is_found_by_every_plane_through_it(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    const int none[3] = {-1, -1, -1};
+    const int hole[3] = {10, 9, 8};
+    pvtBitGrid whole;
+    pvtBitGrid pierced;
+    MakeBlock(context, none, &whole);
+    MakeBlock(context, hole, &pierced);
+    pvtRandom random = pvtMakeRandom(5, 5);
+    const pvtVec3 center = {10.5, 9.5, 8.5};
+    for (int round = 0; round < 300; ++round) {
+        // Two random corners and a third such that the hole's centre lies inside the triangle.
+        pvtVec3 corners[3];
+        for (int c = 0; c < 2; ++c) {
+            corners[c] = (pvtVec3){pvtRandom_Unit(&random) * 5 + 8, pvtRandom_Unit(&random) * 5 + 7,
+                                   pvtRandom_Unit(&random) * 4 + 6.5};
+        }
+        corners[2] = pvtSub(pvtScale(center, 3.0), pvtAdd(corners[0], corners[1]));
+        assert_true(CountOutside(context, &whole, corners) == 0);
+        assert_true(CountOutside(context, &pierced, corners) == 1);
+    }
+    pvtBitGrid_Free(context, &whole);
+    pvtBitGrid_Free(context, &pierced);
+    DestroyTestContext(context);
+}
+
+static void what_reaches_out_by_more_than_the_slack_is_counted(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    const int none[3] = {-1, -1, -1};
+    pvtBitGrid grid;
+    MakeBlock(context, none, &grid);
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int side = 0; side < 2; ++side) {
+            for (int beyond = 0; beyond < 3; ++beyond) {
+                // On the block's face, and 1/4096 and 1/256 of a voxel past it.
+                const double past = beyond == 0 ? 0.0 : beyond == 1 ? 0x1p-12 : 0x1p-8;
+                pvtVec3 corners[3] = {{8.3, 8.3, 8.3}, {8.6, 8.4, 8.7}, {8.4, 8.6, 8.2}};
+                pvtSetAxis(&corners[1], axis, side == 0 ? 4.0 - past : 16.0 + past);
+                assert_true(CountOutside(context, &grid, corners) == (beyond == 2 ? 1 : 0));
+            }
+        }
+    }
+    // Far outside, beyond the grid even.
+    const pvtVec3 away[3] = {{-50, 8.5, 8.5}, {70, 8.5, 8.5}, {70, 8.7, 8.5}};
+    assert_true(CountOutside(context, &grid, away) > 0);
+    pvtBitGrid_Free(context, &grid);
+    DestroyTestContext(context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_planted_hole_is_found_by_every_plane_through_it),
+        cmocka_unit_test(what_reaches_out_by_more_than_the_slack_is_counted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
