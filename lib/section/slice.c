@@ -156,7 +156,7 @@ static inline uint64_t SliceColumn(const Slicing* slicing, size_t column, int64_
 }
 
 // Bit n goes to bit n × cellsPerVoxel.
-static uint64_t SpreadBits(uint64_t bits, int cellsPerVoxel)
+static inline uint64_t SpreadBits(uint64_t bits, int cellsPerVoxel)
 {
     if (cellsPerVoxel == 2) {
         bits = (bits | bits << 16) & UINT64_C(0x0000FFFF0000FFFF);
@@ -171,9 +171,10 @@ static uint64_t SpreadBits(uint64_t bits, int cellsPerVoxel)
     return (bits | bits << 3) & UINT64_C(0x1111111111111111);
 }
 
-// Phase p holds the cells p, p + cellsPerVoxel, ... of word w's columns.
-static void StorePhases(const uint64_t* phases, int cellsPerVoxel, size_t w, size_t wordsPerRow,
-                        uint64_t* row)
+// Phase p holds the cells p, p + cellsPerVoxel, ... of word w's columns. Inline, so that a constant
+// cellsPerVoxel unrolls it.
+static inline void StorePhases(const uint64_t* phases, int cellsPerVoxel, size_t w,
+                               size_t wordsPerRow, uint64_t* row)
 {
     const int width = COLUMNS / cellsPerVoxel;
     for (int part = 0; part < cellsPerVoxel; ++part) {
@@ -214,7 +215,11 @@ static void SliceRow(const Slicing* slicing, int j, size_t wordsPerRow, uint64_t
             for (int phase = 0; phase < cells; ++phase) {
                 phases[phase] = SlicePhase(slicing, column + w, rise + slicing->stepU * phase);
             }
-            StorePhases(phases, cells, w, wordsPerRow, row);
+            if (cells == 2) {
+                StorePhases(phases, 2, w, wordsPerRow, row);
+            } else {
+                StorePhases(phases, 4, w, wordsPerRow, row);
+            }
         }
         rise += slicing->stepU * cells * COLUMNS;
     }
@@ -255,9 +260,7 @@ void pvtSliceGrid(const pvtSliceVolume* volume, const pvtPlane* plane, pvtSliceR
     Slicing slicing = {
         .columns = &volume->axes[plane->axis],
         .table = &table,
-        .bits = PVT_PLANE_BITS + (cellsPerVoxel == 1   ? 1
-                                  : cellsPerVoxel == 2 ? 2
-                                                       : 3),
+        .bits = PVT_PLANE_BITS + 1 + cellsPerVoxel / 2, // of 2 × cellsPerVoxel
         .stepU = 2 * (int64_t)plane->slopeU,
         .stepV = 2 * (int64_t)plane->slopeV,
         .cellsPerVoxel = cellsPerVoxel,

@@ -108,14 +108,20 @@ typedef struct pvtSlicer {
     void* user;
 } pvtSlicer;
 
+/// Depths are measured along a plane's dominant axis, as offsets are. Near duplicates among the
+/// directions (within 2°) are dropped: faces come first, then axes, face diagonals, and the rest.
 typedef struct pvtPlanOptions {
-    int directions;    ///< 0 to 4096 spread evenly over the hemisphere; default 32
+    int directions;    ///< 0 to 4096 spread evenly between the others; default 32
     bool axes;         ///< the three axes and the six face diagonals too; default true
-    int depths;        ///< 1 to 256: depth bins a direction; default 24
-    int samplesPerBin; ///< 1 to 64: planes tried in each bin; default 4
-    double outermost;  ///< [vx] > 0: depth below the outermost extent of the extra planes that
-                       ///< each axis and face direction gets; default 1.0
-    const pvtFaceDirectionSet* faces; ///< may be null; default null
+    int depths;        ///< 1 to 256: most depth bins a direction; none is thinner than a voxel
+                       ///< unless there is only one; default 24
+    int samplesPerBin; ///< 1 to 64: most planes tried in each bin, no closer than a voxel; across
+                       ///< axes and face directions it is 64, so that no wall falls between two
+                       ///< planes; default 4
+    double outermost;  ///< > 0: axes and face directions get an extra bin at both ends, of a few
+                       ///< planes between half a voxel below the outermost extent and the depth
+                       ///< below which a half-space's slices are whole, all times this; default 1
+    const pvtFaceDirectionSet* faces; ///< may be null; borrowed; default null
 } pvtPlanOptions;
 
 /// Planes in bins: bin b holds planes binStarts[b] to binStarts[b + 1] − 1.
@@ -128,8 +134,10 @@ typedef struct pvtSectionPlan {
 
 PVT_API pvtPlanOptions pvtDefaultPlanOptions(void);
 
-/// Bins over direction × depth within the bounds of the set voxels of `grid`. A plan without any
-/// plane is not an error: the grid was empty.
+/// Bins over direction × depth within the exact extents of the set voxels of `grid`. A plan without
+/// any plane is not an error: the grid was empty. There are at most directions × depths ×
+/// samplesPerBin planes, and for each axis and face direction as many as its extent has voxels (but
+/// depths × 64 at most) and 14 more: about 10,000 with the defaults on a grid of 256 voxels.
 PVT_API pvtStatus pvtPlanSections(pvtContext* context, const pvtPlanOptions* options,
                                   const pvtBitGrid* grid, pvtSectionPlan* plan);
 PVT_API void pvtSectionPlan_Free(pvtContext* context, pvtSectionPlan* plan);
@@ -157,9 +165,9 @@ typedef struct pvtSectionSet {
 
 PVT_API pvtSearchOptions pvtDefaultSearchOptions(void);
 
-/// Slices every plane of the plan, one cell a voxel by PVT_SLICE_CENTER, and keeps the plane of the
-/// largest slice in each bin (ties: the first). Its area is then measured by options->rule, and
-/// planes without any are dropped.
+/// Slices every plane of the plan by PVT_SLICE_CENTER at one cell a voxel, in the slicer if there is
+/// one, then those that may be a bin's largest by options->rule and options->cellsPerVoxel: keeps
+/// the largest of each bin (ties: the first in the plan), unless its area is 0.
 PVT_API pvtStatus pvtSearchSections(pvtContext* context, const pvtSearchOptions* options,
                                     const pvtSliceVolume* volume, const pvtSectionPlan* plan,
                                     pvtSectionSet* set);
