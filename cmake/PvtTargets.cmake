@@ -28,4 +28,8 @@ function(pvt_add_library NAME)
                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
         PRIVATE ${PROJECT_SOURCE_DIR}/lib)
     target_link_libraries(paravent_${NAME} PRIVATE $<BUILD_INTERFACE:pvt_flags>)
+    if(BUILD_SHARED_LIBS AND NOT PARAVENT_SANITIZE)
+        # What a library needs, it names: nothing is left for the program to bring along.
+        target_link_options(paravent_${NAME} PRIVATE LINKER:--no-undefined)
+    endif()
 endfunction()
