@@ -5,6 +5,7 @@
 #include "base/context.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 void pvtBitGrid_Free(pvtContext* context, pvtBitGrid* grid)
@@ -89,4 +90,88 @@ bool pvtBitGrid_FindBounds(const pvtBitGrid* grid, pvtGridBox* box)
         }
     }
     return box->upper[0] > 0;
+}
+
+// 64 bits of a row from bit `first` on, which may lie before or beyond it: there, bits are 0.
+static uint64_t ReadBits(const uint64_t* row, long count, long first)
+{
+    const long word = first >= 0 ? first / 64 : -((63 - first) / 64);
+    const int shift = (int)(first - word * 64);
+    const uint64_t low = word >= 0 && word < count ? row[word] : 0;
+    const uint64_t high = word + 1 >= 0 && word + 1 < count ? row[word + 1] : 0;
+    return shift == 0 ? low : low >> shift | high << (64 - shift);
+}
+
+pvtStatus pvtMoveBitGrid(pvtContext* context, const pvtBitGrid* grid, const int offset[3],
+                         const int size[3], pvtBitGrid* moved)
+{
+    pvtGridFrame frame = {grid->frame.origin, grid->frame.voxelSize, {size[0], size[1], size[2]}};
+    frame.origin.x -= offset[0] * frame.voxelSize;
+    frame.origin.y -= offset[1] * frame.voxelSize;
+    frame.origin.z -= offset[2] * frame.voxelSize;
+    const pvtStatus status = pvtCreateBitGrid(context, &frame, moved);
+    if (status != PVT_OK) {
+        return status;
+    }
+    for (int z = 0; z < size[2]; ++z) {
+        for (int y = 0; y < size[1]; ++y) {
+            const int from[2] = {y - offset[1], z - offset[2]};
+            if (from[0] < 0 || from[1] < 0 || from[0] >= grid->frame.size[1] ||
+                from[1] >= grid->frame.size[2]) {
+                continue;
+            }
+            const uint64_t* source = pvtBitGrid_GetRow(grid, from[0], from[1]);
+            uint64_t* row = pvtBitGrid_GetRow(moved, y, z);
+            for (size_t i = 0; i < moved->wordsPerRow; ++i) {
+                row[i] = ReadBits(source, (long)grid->wordsPerRow, (long)i * 64 - offset[0]);
+            }
+            row[moved->wordsPerRow - 1] &= pvtBitGrid_GetTailMask(moved);
+        }
+    }
+    return PVT_OK;
+}
+
+void pvtBitGrid_Complement(pvtBitGrid* grid)
+{
+    const uint64_t tailMask = pvtBitGrid_GetTailMask(grid);
+    for (size_t begin = 0; begin < grid->wordCount; begin += grid->wordsPerRow) {
+        uint64_t* row = grid->words + begin;
+        for (size_t i = 0; i < grid->wordsPerRow; ++i) {
+            row[i] = ~row[i];
+        }
+        row[grid->wordsPerRow - 1] &= tailMask;
+    }
+}
+
+void pvtBitGrid_SetLayers(pvtBitGrid* grid, pvtAxis axis, int begin, int end)
+{
+    int lower[3] = {0, 0, 0};
+    int upper[3] = {grid->frame.size[0], grid->frame.size[1], grid->frame.size[2]};
+    lower[axis] = begin;
+    upper[axis] = end;
+    for (int z = lower[2]; z < upper[2]; ++z) {
+        for (int y = lower[1]; y < upper[1]; ++y) {
+            pvtSetBitRange(pvtBitGrid_GetRow(grid, y, z), (size_t)lower[0], (size_t)upper[0]);
+        }
+    }
+}
+
+pvtStatus pvtCheckGridMemory(pvtContext* context, const pvtBitGrid* grid, double count,
+                             const char* purpose)
+{
+    const double needed = count * (double)grid->wordCount * sizeof *grid->words;
+    const double left = (double)pvtGetFreeBytes(context);
+    if (needed <= left) {
+        return PVT_OK;
+    }
+    // What is held already shrinks along: the grid itself, and with it what is left grows.
+    const double held = (double)grid->wordCount * sizeof *grid->words;
+    const int* size = grid->frame.size;
+    const int longest = size[0] > size[1] ? size[0] : size[1];
+    const double sides = (double)(longest > size[2] ? longest : size[2]);
+    return pvtFail(context, PVT_LIMIT,
+                   "%s needs %.1f MB, but only %.1f MB of the memory limit are left; a resolution "
+                   "of about %.0f would fit",
+                   purpose, needed / 1e6, left / 1e6,
+                   floor(0.95 * sides * cbrt((left + held) / (needed + held))));
 }

@@ -21,6 +21,25 @@ pvtStatus pvtCopyBitGrid(pvtContext* context, const pvtBitGrid* grid, pvtBitGrid
 /// The smallest box around all set bits; false when there are none.
 bool pvtBitGrid_FindBounds(const pvtBitGrid* grid, pvtGridBox* box);
 
+static inline double pvtGridBox_GetVolume(const pvtGridBox* box)
+{
+    return (double)(box->upper[0] - box->lower[0]) * (double)(box->upper[1] - box->lower[1]) *
+           (double)(box->upper[2] - box->lower[2]);
+}
+
+/// A grid of the same voxels, `offset` voxels farther from its lower corner, in a frame of `size`:
+/// padded where it grows, cropped where it shrinks.
+pvtStatus pvtMoveBitGrid(pvtContext* context, const pvtBitGrid* grid, const int offset[3],
+                         const int size[3], pvtBitGrid* moved);
+/// Every voxel that is not set.
+void pvtBitGrid_Complement(pvtBitGrid* grid);
+/// Sets all voxels from `begin` to `end` − 1 along an axis.
+void pvtBitGrid_SetLayers(pvtBitGrid* grid, pvtAxis axis, int begin, int end);
+/// PVT_LIMIT, with the resolution that would fit, when `count` more grids like this one do not fit
+/// in the memory limit.
+pvtStatus pvtCheckGridMemory(pvtContext* context, const pvtBitGrid* grid, double count,
+                             const char* purpose);
+
 static inline size_t pvtGetRowIndex(const pvtBitGrid* grid, int y, int z)
 {
     return (size_t)z * (size_t)grid->frame.size[1] + (size_t)y;

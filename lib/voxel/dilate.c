@@ -3,7 +3,8 @@
 //
 // The ball is a stack of rows: at (dy, dz) from its centre it is 2w + 1 voxels long. An output row
 // gathers the rows around it from the longest to the shortest, and grows by one bit at each side
-// between two lengths, so that each row ends up widened by its own w.
+// between two lengths, so that each row ends up widened by its own w. That costs as much as the
+// ball has rows; large balls go by distances instead (dilate_far.c), when there is memory for it.
 #include "dilate.h"
 
 #include "bit_grid.h"
@@ -12,6 +13,9 @@
 
 #include <math.h>
 #include <stdatomic.h>
+
+// Here both ways take about the same time.
+enum { SQUARED_RADIUS_BY_DISTANCE = 20 * 20 };
 
 // A row of the ball: where it lies, and by how many voxels it reaches to either side.
 typedef struct BallRow {
@@ -152,6 +156,10 @@ pvtStatus pvtDilateGrid(pvtContext* context, const pvtBitGrid* grid, uint32_t sq
 {
     if (squaredRadius == 0) {
         return pvtCopyBitGrid(context, grid, dilated);
+    }
+    if (squaredRadius >= SQUARED_RADIUS_BY_DISTANCE &&
+        pvtGetDistanceDilationBytes(context, grid) <= (double)pvtGetFreeBytes(context)) {
+        return pvtDilateByDistance(context, grid, squaredRadius, dilated);
     }
     *dilated = (pvtBitGrid){0};
     Dilation dilation = {.context = context, .grid = grid, .dilated = dilated};

@@ -13,4 +13,9 @@ uint32_t pvtGetSquaredReach(const pvtGridFrame* frame, double distance);
 pvtStatus pvtDilateGrid(pvtContext* context, const pvtBitGrid* grid, uint32_t squaredRadius,
                         pvtBitGrid* dilated);
 
+/// The same for large radii: the time does not depend on them, but a count is kept for each voxel.
+pvtStatus pvtDilateByDistance(pvtContext* context, const pvtBitGrid* grid, uint32_t squaredRadius,
+                              pvtBitGrid* dilated);
+double pvtGetDistanceDilationBytes(const pvtContext* context, const pvtBitGrid* grid);
+
 #endif

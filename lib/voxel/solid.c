@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What a surface encloses (paper, section 4.1, and beyond).
 #include "bit_grid.h"
-#include "flood.h"
+#include "outside.h"
 
 #include "base/context.h"
 
 #include <math.h>
+
+// The copy of the surface and the inside.
+enum { GRIDS_NEEDED = 2 };
 
 pvtSolidOptions pvtDefaultSolidOptions(void)
 {
@@ -31,20 +34,27 @@ static pvtStatus CheckOptions(pvtContext* context, const pvtSolidOptions* option
                        "enclosed is %d; it must be -1 (off) or 0 to 25 directions",
                        options->enclosed);
     }
-    if (options->smallestHole > 0.0 || options->ground || options->terrain ||
-        options->enclosed >= 0) {
-        return pvtFail(context, PVT_UNSUPPORTED, "only the plain flood is there");
+    if (options->up != PVT_AXIS_X && options->up != PVT_AXIS_Y && options->up != PVT_AXIS_Z) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT, "axis %d is none of x, y and z",
+                       (int)options->up);
     }
     return PVT_OK;
 }
 
-static void Complement(pvtBitGrid* grid)
+pvtStatus pvtFindInside(pvtContext* context, const pvtSolidOptions* options,
+                        const pvtBitGrid* surface, pvtBitGrid* inside)
 {
-    const uint64_t tailMask = pvtBitGrid_GetTailMask(grid);
-    for (size_t i = 0; i < grid->wordCount; ++i) {
-        const bool isTail = (i + 1) % grid->wordsPerRow == 0;
-        grid->words[i] = ~grid->words[i] & (isTail ? tailMask : ~UINT64_C(0));
+    pvtStatus status = pvtFloodOutside(context, options, surface, inside);
+    if (status == PVT_OK && options->terrain) {
+        pvtFillBelowTerrain(surface, options->up, inside);
     }
+    if (status == PVT_OK && options->enclosed >= 0) {
+        status = pvtFillEnclosed(context, options->enclosed, inside);
+    }
+    if (status != PVT_OK) {
+        pvtBitGrid_Free(context, inside);
+    }
+    return status;
 }
 
 static void CountVoxels(pvtSolid* solid)
@@ -54,11 +64,39 @@ static void CountVoxels(pvtSolid* solid)
     solid->strictCount = solid->insideCount - solid->surfaceCount;
     pvtGridBox box;
     if (pvtBitGrid_FindBounds(&solid->surface, &box)) {
-        const double volume = (double)(box.upper[0] - box.lower[0]) *
-                              (double)(box.upper[1] - box.lower[1]) *
-                              (double)(box.upper[2] - box.lower[2]);
-        solid->insideFraction = (double)solid->strictCount / volume;
+        solid->insideFraction = (double)solid->strictCount / pvtGridBox_GetVolume(&box);
     }
+}
+
+// Says what would help when the flood found its way in.
+static pvtStatus WarnWhenHollow(pvtContext* context, const pvtSolidOptions* options,
+                                pvtSolid* solid)
+{
+    const pvtStatus status =
+        pvtFindRemedy(context, options, &solid->surface, solid->strictCount, &solid->remedy);
+    if (status != PVT_OK) {
+        return status;
+    }
+    const double percent = 100.0 * solid->insideFraction;
+    const pvtRemedy* remedy = &solid->remedy;
+    if (remedy->smallestHole > 0.0) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the solid is hollow: only %.2g %% of the bounds is inside, because the surface has "
+               "openings; smallest-hole %g (%.1f voxels) would close it",
+               percent, remedy->smallestHole,
+               remedy->smallestHole / solid->surface.frame.voxelSize);
+    } else if (remedy->ground) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "
+               "open below; ground would close it",
+               percent);
+    } else if (remedy->terrain) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the solid is hollow: only %.2g %% of the bounds is inside, but the surface looks "
+               "like a landscape; terrain would fill what lies below",
+               percent);
+    }
+    return PVT_OK;
 }
 
 pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
@@ -70,19 +108,40 @@ pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
         return status;
     }
     pvtBeginStage(context, "fill");
-    status = pvtCopyBitGrid(context, surface, &solid->surface);
+    status = pvtCheckGridMemory(context, surface, GRIDS_NEEDED, "the solid");
     if (status == PVT_OK) {
-        status = pvtCreateBitGrid(context, &surface->frame, &solid->inside);
+        status = pvtCopyBitGrid(context, surface, &solid->surface);
     }
     if (status == PVT_OK) {
-        status = pvtFloodFromBorder(context, surface, &solid->inside);
+        status = pvtFindInside(context, options, surface, &solid->inside);
+    }
+    if (status == PVT_OK) {
+        CountVoxels(solid);
+        status = WarnWhenHollow(context, options, solid);
     }
     if (status != PVT_OK) {
         pvtSolid_Free(context, solid);
         return status;
     }
-    Complement(&solid->inside);
-    CountVoxels(solid);
     pvtReportProgress(context, 1.0);
     return PVT_OK;
+}
+
+pvtStatus pvtSuggestSmallestHole(pvtContext* context, const pvtSolidOptions* options,
+                                 const pvtBitGrid* surface, double* smallestHole)
+{
+    *smallestHole = 0.0;
+    pvtStatus status = CheckOptions(context, options);
+    pvtBitGrid inside = {0};
+    if (status == PVT_OK) {
+        status = pvtFindInside(context, options, surface, &inside);
+    }
+    pvtRemedy remedy = {0};
+    if (status == PVT_OK) {
+        const uint64_t strict = pvtBitGrid_Count(&inside) - pvtBitGrid_Count(surface);
+        status = pvtFindRemedy(context, options, surface, strict, &remedy);
+    }
+    pvtBitGrid_Free(context, &inside);
+    *smallestHole = remedy.smallestHole;
+    return status;
 }

@@ -56,6 +56,13 @@ typedef struct pvtSolidOptions {
                          ///< many escape counts as inside; −1: off; default −1
 } pvtSolidOptions;
 
+/// What would fill a solid that came out hollow; all 0 when it is not, or when nothing would.
+typedef struct pvtRemedy {
+    double smallestHole; ///< [wu] > 0: this smallestHole closes the openings
+    bool ground;         ///< the surface is open below
+    bool terrain;        ///< the surface looks like a landscape
+} pvtRemedy;
+
 /// What the surface encloses. `inside` holds the touched voxels too; the strict interior is
 /// inside and not surface.
 typedef struct pvtSolid {
@@ -64,7 +71,8 @@ typedef struct pvtSolid {
     uint64_t insideCount;  ///< [vx] in `inside`
     uint64_t surfaceCount; ///< [vx]
     uint64_t strictCount;  ///< [vx] inside and not touched
-    double insideFraction; ///< strictCount over the voxels of the mesh's bounds
+    double insideFraction; ///< strictCount over the voxels of the surface's bounds
+    pvtRemedy remedy;      ///< at most one of its fields is set
 } pvtSolid;
 
 PVT_API pvtSolidOptions pvtDefaultSolidOptions(void);
