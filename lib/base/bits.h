@@ -3,6 +3,7 @@
 #ifndef PVT_BASE_BITS_H
 #define PVT_BASE_BITS_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -30,6 +31,7 @@ static inline void pvtClearBit(uint64_t* row, size_t bit)
 /// The bits from `begin` to `end` − 1 of one word, 0 ≤ begin ≤ end ≤ 64.
 static inline uint64_t pvtMakeMask(unsigned begin, unsigned end)
 {
+    assert(begin <= end && end <= 64);
     const uint64_t below = end == 64 ? ~UINT64_C(0) : (UINT64_C(1) << end) - 1;
     return begin == 64 ? 0 : below & (~UINT64_C(0) << begin);
 }

@@ -81,7 +81,7 @@ void pvtToggleMaskEdge(uint64_t* rows, int size, pvtMaskPoint from, pvtMaskPoint
     const double slope = (double)(high.x - low.x) / (double)(high.y - low.y);
     const int64_t step = (int64_t)(slope * 0x1p24);
     const int64_t center = ((int64_t)row << PVT_MASK_POINT_BITS) + (1 << (PVT_MASK_POINT_BITS - 1));
-    int64_t x = ((int64_t)low.x << 16) + (int64_t)(slope * 0x1p16 * (double)(center - low.y));
+    int64_t x = (int64_t)low.x * 65536 + (int64_t)(slope * 0x1p16 * (double)(center - low.y));
     const int words = size >> 6;
     if (words == 1) {
         for (; row < end; ++row, x += step) {
