@@ -16,7 +16,7 @@ enum { MAX_SAMPLES = 64 };
 pvtPlanOptions pvtDefaultPlanOptions(void)
 {
     return (pvtPlanOptions){
-        .directions = 32, .axes = true, .depths = 24, .samplesPerBin = 4, .outermost = 1.0};
+        .directions = 32, .axes = true, .depths = 24, .samplesPerBin = 8, .outermost = 1.0};
 }
 
 void pvtSectionPlan_Free(pvtContext* context, pvtSectionPlan* plan)

@@ -41,17 +41,23 @@ void pvtSectionSet_Free(pvtContext* context, pvtSectionSet* set)
     *set = (pvtSectionSet){0};
 }
 
-// The worker's room, in the shape that the plane's slices have.
-static pvtBitmap GetScratch(const SearchTask* task, int worker, const pvtPlane* plane, int cells)
+// A bitmap for the plane's slices, still without words.
+static pvtBitmap MakeShape(const SearchTask* task, const pvtPlane* plane, int cells)
 {
     const int* size = task->volume->grid->frame.size;
     const int width = size[pvtPlane_GetU(plane)] * cells;
     return (pvtBitmap){
-        .words = task->scratch + (size_t)worker * task->scratchSize,
         .width = width,
         .height = size[pvtPlane_GetV(plane)] * cells,
         .wordsPerRow = pvtGetWordCount((size_t)width),
     };
+}
+
+static pvtBitmap GetScratch(const SearchTask* task, int worker, const pvtPlane* plane, int cells)
+{
+    pvtBitmap slice = MakeShape(task, plane, cells);
+    slice.words = task->scratch + (size_t)worker * task->scratchSize;
+    return slice;
 }
 
 // Counts a piece of work as done; false when the search is to stop.
@@ -206,7 +212,7 @@ static pvtStatus AllocateSearch(SearchTask* task)
 {
     for (int axis = 0; axis < 3; ++axis) {
         const pvtPlane plane = {.axis = (pvtAxis)axis};
-        const pvtBitmap shape = GetScratch(task, 0, &plane, task->options->cellsPerVoxel);
+        const pvtBitmap shape = MakeShape(task, &plane, task->options->cellsPerVoxel);
         const size_t size = shape.wordsPerRow * (size_t)shape.height;
         task->scratchSize = size > task->scratchSize ? size : task->scratchSize;
     }

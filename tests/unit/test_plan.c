@@ -174,6 +174,40 @@ static void planes_across_an_axis_miss_no_layer_of_voxels(void** state)
     DestroyTestContext(context);
 }
 
+static void
+the_ends_of_a_slanted_face_are_tried_from_its_steps_down_to_where_all_is_covered(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtRandom random = pvtMakeRandom(24, 1);
+    pvtBitGrid grid = MakeGrid(context, 50, 40, 30);
+    FillSparse(&grid, &random, 2000);
+    pvtFaceDirection face = {{0.8, 0.48, 0.36}, 1.0};
+    const pvtFaceDirectionSet faces = {&face, 1};
+    pvtPlanOptions options = pvtDefaultPlanOptions();
+    options.faces = &faces;
+    options.axes = false;
+    options.directions = 0;
+    pvtSectionPlan plan;
+    CHECK_OK(context, pvtPlanSections(context, &options, &grid, &plan));
+    const pvtOffsetRange range = FindRangeSlowly(&grid, &plan.planes[0]);
+    const double covered = 1.0 + (0.48 + 0.36) / 0.8;
+    for (size_t end = 0; end < 2; ++end) {
+        const size_t bin = plan.binCount - 2 + end;
+        double last = 0.0;
+        for (size_t i = plan.binStarts[bin]; i < plan.binStarts[bin + 1]; ++i) {
+            const int64_t offset = plan.planes[i].offset;
+            const int64_t depth = end == 0 ? offset - range.lower : range.upper - offset;
+            assert_true(fabs((double)depth / ONE - last - 0.5) < 1e-5);
+            last = (double)depth / ONE;
+        }
+        assert_true(last >= covered && last < covered + 0.5);
+    }
+    pvtSectionPlan_Free(context, &plan);
+    pvtRelease(context, grid.words);
+    DestroyTestContext(context);
+}
+
 static double GetLeastAngle(const pvtPlanLine* lines, size_t count)
 {
     double largest = 0.0;
@@ -383,6 +417,8 @@ int main(void)
         cmocka_unit_test(extents_are_those_of_the_farthest_corners_of_set_voxels),
         cmocka_unit_test(planes_are_planned_ones_in_bins_of_one_direction_within_the_extents),
         cmocka_unit_test(planes_across_an_axis_miss_no_layer_of_voxels),
+        cmocka_unit_test(
+            the_ends_of_a_slanted_face_are_tried_from_its_steps_down_to_where_all_is_covered),
         cmocka_unit_test(directions_are_spread_evenly),
         cmocka_unit_test(faces_come_first_and_near_duplicates_are_dropped),
         cmocka_unit_test(plans_are_the_same_for_any_number_of_threads),

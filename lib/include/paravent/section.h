@@ -117,7 +117,7 @@ typedef struct pvtPlanOptions {
                        ///< unless there is only one; default 24
     int samplesPerBin; ///< 1 to 64: most planes tried in each bin, no closer than a voxel; across
                        ///< axes and face directions it is 64, so that no wall falls between two
-                       ///< planes; default 4
+                       ///< planes; default 8, which finds 99 % of the area that 64 do
     double outermost;  ///< > 0: axes and face directions get an extra bin at both ends, of a few
                        ///< planes between half a voxel below the outermost extent and the depth
                        ///< below which a half-space's slices are whole, all times this; default 1
@@ -137,7 +137,7 @@ PVT_API pvtPlanOptions pvtDefaultPlanOptions(void);
 /// Bins over direction × depth within the exact extents of the set voxels of `grid`. A plan without
 /// any plane is not an error: the grid was empty. There are at most directions × depths ×
 /// samplesPerBin planes, and for each axis and face direction as many as its extent has voxels (but
-/// depths × 64 at most) and 14 more: about 10,000 with the defaults on a grid of 256 voxels.
+/// depths × 64 at most) and 12 more: about 13,000 with the defaults on a grid of 256 voxels.
 PVT_API pvtStatus pvtPlanSections(pvtContext* context, const pvtPlanOptions* options,
                                   const pvtBitGrid* grid, pvtSectionPlan* plan);
 PVT_API void pvtSectionPlan_Free(pvtContext* context, pvtSectionPlan* plan);
