@@ -583,6 +583,66 @@ static void cancelling_leaves_nothing_and_progress_only_grows(void** state)
     DestroyTestContext(context);
 }
 
+static const uint8_t* GetPixel(const pvtImage* image, int x, int y)
+{
+    return image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
+}
+
+static void AssertColour(const pvtImage* image, int x, int y, const uint8_t colour[3])
+{
+    const uint8_t* pixel = GetPixel(image, x, y);
+    assert_memory_equal(pixel, colour, 3);
+    assert_int_equal(pixel[3], 255);
+}
+
+// A square, and an occluder over its upper right quarter and as much beyond it.
+static void silhouettes_are_black_yellow_and_blue_on_white(void** state)
+{
+    (void)state;
+    static const uint8_t white[3] = {255, 255, 255}, black[3] = {0, 0, 0};
+    static const uint8_t blue[3] = {30, 80, 230}, yellow[3] = {255, 221, 0};
+    pvtContext* context = CreateTestContext(2);
+    Sheet square = MakeSheet(0, 0, 2, 2, 0), corner = MakeSheet(1, 1, 3, 3, 1);
+    const pvtMesh original = GetMesh(&square), occluder = GetMesh(&corner);
+    const pvtVec3 directions[2] = {{0, 0, -5}, {0, 0, 1}};
+    pvtSilhouetteOptions options = pvtDefaultSilhouetteOptions();
+    options.directions = directions;
+    options.count = 2;
+    options.width = 100;
+    options.height = 64; // 60 pixels for 3 units
+    options.margin = 2;
+    pvtImage images[2];
+    CHECK_OK(context, pvtDrawSilhouettes(context, &options, &original, &occluder, images));
+    AssertColour(&images[0], 1, 32, white);
+    AssertColour(&images[0], 25, 57, black);
+    AssertColour(&images[0], 50, 32, yellow);
+    AssertColour(&images[0], 74, 6, blue);
+    AssertColour(&images[0], 25, 6, white);
+    AssertColour(&images[0], 74, 57, white);
+    // From behind, left is right.
+    AssertColour(&images[1], 74, 57, black);
+    AssertColour(&images[1], 25, 6, blue);
+    uint64_t counts[4] = {0};
+    for (int i = 0; i < 6400; ++i) {
+        const uint8_t* pixel = images[0].pixels + 4 * i;
+        const uint8_t* colours[4] = {white, black, blue, yellow};
+        for (int k = 0; k < 4; ++k) {
+            counts[k] += memcmp(pixel, colours[k], 3) == 0;
+        }
+    }
+    assert_int_equal(counts[1], 1200); // three quarters of 40 × 40
+    assert_int_equal(counts[2], 1200);
+    assert_int_equal(counts[3], 400);
+    for (int i = 0; i < 2; ++i) {
+        pvtImage_Free(context, &images[i]);
+    }
+    options.margin = 16;
+    assert_int_equal(pvtDrawSilhouettes(context, &options, &original, &occluder, images),
+                     PVT_INVALID_ARGUMENT);
+    assert_null(images[1].pixels);
+    DestroyTestContext(context);
+}
+
 // An allocator that serves so many requests and no more.
 static void* AllocateSome(void* user, size_t size)
 {
@@ -616,6 +676,15 @@ static void each_refused_allocation_is_told_and_leaks_nothing(void** state)
         assert_true(status != PVT_OK || served > 12);
         assert_true((status == PVT_OK) == (evaluation.occluders != NULL));
         pvtEvaluation_Free(context, &evaluation);
+
+        atomic_store(&left, served);
+        const pvtVec3 direction = {1, 2, 3};
+        pvtSilhouetteOptions silhouettes = {&direction, 1, 16, 16, 1};
+        pvtImage image;
+        const pvtStatus drawn = pvtDrawSilhouettes(context, &silhouettes, &ball, &other, &image);
+        assert_true(drawn == PVT_OK || drawn == PVT_OUT_OF_MEMORY);
+        assert_true((drawn == PVT_OK) == (image.pixels != NULL));
+        pvtImage_Free(context, &image);
         DestroyTestContext(context);
     }
     FreeBall(&ball);
@@ -642,6 +711,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_judged_is_refused),
         cmocka_unit_test(unused_positions_do_not_count),
         cmocka_unit_test(cancelling_leaves_nothing_and_progress_only_grows),
+        cmocka_unit_test(silhouettes_are_black_yellow_and_blue_on_white),
         cmocka_unit_test(each_refused_allocation_is_told_and_leaks_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

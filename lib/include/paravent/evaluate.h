@@ -4,6 +4,7 @@
 #ifndef PARAVENT_EVALUATE_H
 #define PARAVENT_EVALUATE_H
 
+#include <paravent/image.h>
 #include <paravent/mesh.h>
 
 #ifdef __cplusplus
@@ -64,6 +65,22 @@ PVT_API pvtStatus pvtEvaluateOccluders(pvtContext* context, const pvtEvaluateOpt
                                        const pvtMesh* original, const pvtMesh* occluders,
                                        size_t count, pvtEvaluation* evaluation);
 PVT_API void pvtEvaluation_Free(pvtContext* context, pvtEvaluation* evaluation);
+
+typedef struct pvtSilhouetteOptions {
+    const pvtVec3* directions; ///< to look along, of any length > 0, as the evaluation does
+    size_t count;
+    int width, height; ///< [px] of each picture, 16 to 4096; default 512
+    int margin;        ///< [px] left free at each side, less than a quarter; default 8
+} pvtSilhouetteOptions;
+
+PVT_API pvtSilhouetteOptions pvtDefaultSilhouetteOptions(void);
+
+/// A picture a direction, in the colours of the paper's figure 7: original black, where the
+/// occluder covers it yellow, the occluder alone blue, on white. Both fit into each picture, edges
+/// are smoothed. Fills `images`, of which there are options->count.
+PVT_API pvtStatus pvtDrawSilhouettes(pvtContext* context, const pvtSilhouetteOptions* options,
+                                     const pvtMesh* original, const pvtMesh* occluder,
+                                     pvtImage* images);
 
 #ifdef __cplusplus
 }
