@@ -140,6 +140,17 @@ static void ScoreFamily(const EvaluateTask* task, size_t index, pvtQuadFamily fa
     }
 }
 
+static double GetCoverageError(const pvtOccluderScore* score)
+{
+    double spread = 0.0;
+    for (size_t v = 0; v < score->viewCount; ++v) {
+        const double rest = score->views[v].coverage - score->coverage;
+        spread += rest * rest;
+    }
+    const double views = (double)score->viewCount;
+    return sqrt(spread / (views * (views - 1.0)));
+}
+
 // `score` has its views' array.
 static void ScoreOccluder(const EvaluateTask* task, size_t index, pvtOccluderScore* score)
 {
@@ -156,6 +167,9 @@ static void ScoreOccluder(const EvaluateTask* task, size_t index, pvtOccluderSco
     }
     score->coverage /= (double)score->viewCount;
     score->overArea /= (double)score->viewCount;
+    if (task->job.options->directions == NULL && score->viewCount > 1) {
+        score->coverageError = GetCoverageError(score);
+    }
     ScoreFamily(task, index, PVT_QUADS_UNIFORM, score);
     ScoreFamily(task, index, PVT_QUADS_SMALL, score);
 }

@@ -43,6 +43,7 @@ typedef struct pvtOccluderScore {
     size_t triangleCount;
     pvtQuadScore uniform, small; ///< counts summed over all views
     double coverage, overArea;   ///< mean over the views
+    double coverageError;        ///< standard error over the views; 0 where they are given
     double overThickness;        ///< [wu] the largest of all views
     size_t worstView;            ///< the lowest uniform recall; ties: the first
     pvtViewScore* views;         ///< viewCount
