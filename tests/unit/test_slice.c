@@ -195,6 +195,26 @@ static void slices_agree_with_a_look_at_every_voxel(void** state)
     DestroyTestContext(context);
 }
 
+static void patches_that_reach_corners_exactly_touch_four_voxels(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtRandom random = pvtMakeRandom(12, 1);
+    pvtBitGrid grid = MakeGrid(context, 70, 70, 70);
+    FillRandom(&grid, &random, 220);
+    pvtSliceVolume volume;
+    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
+    for (int n = 0; n < 12; ++n) {
+        const int32_t u = n & 1 ? ONE : -ONE, v = n & 2 ? ONE : -ONE;
+        // Through the middle of the grid.
+        const pvtPlane plane = {(pvtAxis)(n / 4), u, v, INT64_C(35) * (ONE - u - v)};
+        CheckAllSlices(context, &volume, &plane);
+    }
+    pvtSliceVolume_Free(context, &volume);
+    pvtRelease(context, grid.words);
+    DestroyTestContext(context);
+}
+
 static void planes_outside_the_grid_have_no_slice(void** state)
 {
     (void)state;
@@ -403,6 +423,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slices_agree_with_a_look_at_every_voxel),
+        cmocka_unit_test(patches_that_reach_corners_exactly_touch_four_voxels),
         cmocka_unit_test(planes_outside_the_grid_have_no_slice),
         cmocka_unit_test(covered_cells_touch_no_clear_voxel_and_have_their_centre_set),
         cmocka_unit_test(slices_of_a_ball_have_the_area_of_a_disk_in_any_direction),
