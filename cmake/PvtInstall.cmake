@@ -55,12 +55,25 @@ if(PARAVENT_GL)
         PRIVATE_LIBS -ldl -lm)
 endif()
 if(PARAVENT_IO)
+    # What the static library leaves to be linked. Only assimp has a .pc file of its own.
+    get_target_property(PVT_IO_LINKS paravent_io LINK_LIBRARIES)
+    set(PVT_IO_PACKAGES)
+    foreach(PVT_PACKAGE IN ITEMS assimp meshoptimizer)
+        if(PVT_IO_LINKS MATCHES "${PVT_PACKAGE}")
+            list(APPEND PVT_IO_PACKAGES ${PVT_PACKAGE})
+        endif()
+    endforeach()
+    set(PVT_IO_REQUIRES ${PVT_IO_PACKAGES})
+    list(FILTER PVT_IO_REQUIRES INCLUDE REGEX "^assimp$")
+    set(PVT_IO_LIBS ${PVT_IO_PACKAGES})
+    list(FILTER PVT_IO_LIBS EXCLUDE REGEX "^assimp$")
+    list(TRANSFORM PVT_IO_LIBS PREPEND "-l")
     pvt_install_library(io PC paravent-io
         DESCRIPTION "Models and images for paravent"
         HEADERS io.h
         REQUIRES "paravent = ${PROJECT_VERSION}"
-        PRIVATE_REQUIRES assimp
-        PRIVATE_LIBS -lstdc++ -ldl -lm)
+        PRIVATE_REQUIRES ${PVT_IO_REQUIRES}
+        PRIVATE_LIBS ${PVT_IO_LIBS} -lstdc++ -ldl -lm)
 endif()
 
 get_target_property(PVT_LIBRARY_TYPE paravent_core TYPE)

@@ -19,7 +19,7 @@ tools=(gcc:gcc g++:g++ cmake:cmake ninja:ninja-build pkg-config:pkg-config)
 # What programs link with or open at run time. libgl1-mesa-dri holds the software rasteriser, and
 # nothing else in this list depends on it.
 packages=(libc6-dev libgl-dev libegl-dev libegl1 libosmesa6 libgl1-mesa-dri
-    libtinygltf-dev nlohmann-json3-dev libassimp-dev libopenimageio-dev)
+    libtinygltf-dev nlohmann-json3-dev libassimp-dev libmeshoptimizer-dev libopenimageio-dev)
 if [ "$purpose" = test ]; then
     tools+=(clang:clang clang-format:clang-format clang-tidy:clang-tidy node:nodejs npm:npm)
     packages+=(libcmocka-dev libclang-rt-14-dev)
@@ -62,6 +62,9 @@ fi
 node="$(cd "$(dirname "${BASH_SOURCE[0]}")/node" && pwd)"
 if [ "$purpose" = test ] && ! cmp -s "$node/package-lock.json" "$node/node_modules/.installed"; then
     echo "setup: installing the glTF validator" >&2
-    (cd "$node" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
+    (cd "$node" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2) || {
+        echo "setup: npm cannot fetch the glTF validator; is there a network?" >&2
+        exit 3
+    }
     cp "$node/package-lock.json" "$node/node_modules/.installed"
 fi
