@@ -113,9 +113,9 @@ typedef struct pvtSlicer {
 typedef struct pvtPlanOptions {
     int directions;    ///< 0 to 4096 spread evenly between the others; default 32
     bool axes;         ///< the three axes and the six face diagonals too; default true
-    int depths;        ///< 1 to 256: most depth bins a direction; none is thinner than a voxel
-                       ///< unless there is only one; default 24
-    int samplesPerBin; ///< 1 to 64: most planes tried in each bin, no closer than a voxel; across
+    int depths;        ///< 1 to 256: most depth bins a direction, and no more than its extent has
+                       ///< voxels, begun ones included; default 24
+    int samplesPerBin; ///< 1 to 64: most planes tried in each bin, one a voxel at most; across
                        ///< axes and face directions it is 64, so that no wall falls between two
                        ///< planes; default 8, which finds 99 % of the area that 64 do
     double outermost;  ///< > 0: axes and face directions get an extra bin at both ends, of a few
