@@ -165,9 +165,9 @@ typedef struct pvtSectionSet {
 
 PVT_API pvtSearchOptions pvtDefaultSearchOptions(void);
 
-/// Slices every plane of the plan by PVT_SLICE_CENTER at one cell a voxel, in the slicer if there is
-/// one, then those that may be a bin's largest by options->rule and options->cellsPerVoxel: keeps
-/// the largest of each bin (ties: the first in the plan), unless its area is 0.
+/// Slices every plane of the plan by PVT_SLICE_CENTER at one cell a voxel, in the slicer if there
+/// is one, then those that may be a bin's largest by options->rule and options->cellsPerVoxel:
+/// keeps the largest of each bin (ties: the first in the plan), unless its area is 0.
 PVT_API pvtStatus pvtSearchSections(pvtContext* context, const pvtSearchOptions* options,
                                     const pvtSliceVolume* volume, const pvtSectionPlan* plan,
                                     pvtSectionSet* set);
