@@ -12,6 +12,10 @@ typedef struct Sources {
 static const Sources programSources[PVT_PROGRAM_COUNT] = {
     [PVT_PROGRAM_SLICE] = {"slice", pvtShaderSliceVert, pvtShaderOneFrag},
     [PVT_PROGRAM_SILHOUETTE] = {"silhouette", pvtShaderSilhouetteVert, pvtShaderOneFrag},
+    [PVT_PROGRAM_SURFACE] = {"surface", pvtShaderSurfaceVert, pvtShaderNormalFrag},
+    [PVT_PROGRAM_OCCLUDER] = {"occluder", pvtShaderSurfaceVert, pvtShaderOccluderFrag},
+    [PVT_PROGRAM_EDGE] = {"edge", pvtShaderEdgeVert, pvtShaderEdgeFrag},
+    [PVT_PROGRAM_RESOLVE] = {"resolve", pvtShaderResolveVert, pvtShaderResolveFrag},
 };
 
 // 0 when it does not compile; then `log` says why.

@@ -52,12 +52,15 @@ PVT_API pvtStatus pvtRenderSilhouette(pvtContext* context, pvtGl* gl, const pvtM
 
 typedef struct pvtPreviewOptions {
     int tileSize; ///< [px] 64 to 2048, each of the six views; default 480
+    pvtAxis up;   ///< default y; the front looks along −z (up y), +y (up z) or +z (up x)
 } pvtPreviewOptions;
 
 PVT_API pvtPreviewOptions pvtDefaultPreviewOptions(void);
 
-/// Six views in two rows of three: the original shaded, the occluder's polygons over it in
-/// translucent colours with their edges.
+/// Six views in two rows of three, tileSize pixels each: from the front, right and above; front;
+/// right; from behind, left and above; top; from the front, left and below. The original is shaded,
+/// the occluder's polygons lie over it in translucent colours, one a plane, with their edges; what
+/// sticks out of the original is solid. Each view is framed around what it shows.
 PVT_API pvtStatus pvtRenderPreview(pvtContext* context, pvtGl* gl, const pvtPreviewOptions* options,
                                    const pvtMesh* original, const pvtMesh* occluder,
                                    pvtImage* image);
