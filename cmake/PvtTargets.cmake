@@ -6,6 +6,9 @@ target_compile_options(pvt_flags INTERFACE
     $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes>
     $<$<BOOL:${PARAVENT_WERROR}>:-Werror>)
 target_compile_definitions(pvt_flags INTERFACE _GNU_SOURCE)
+if(PARAVENT_FUZZ)
+    target_compile_options(pvt_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 if(PARAVENT_SANITIZE)
     target_compile_options(pvt_flags INTERFACE
         -fsanitize=${PARAVENT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
