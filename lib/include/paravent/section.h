@@ -212,21 +212,21 @@ PVT_API pvtStatus pvtSimplifyContours(pvtContext* context, const pvtSimplifyOpti
 PVT_API pvtStatus pvtBridgeHoles(pvtContext* context, const pvtLoopSet* contours,
                                  pvtLoopSet* polygons);
 
-/// ranks[i] says how long point i stays: the link of t triangles is made of the points whose rank
-/// is at most t + 2, in order. The three that stay longest have rank 3, the first to go has rank
-/// pointCount.
 typedef struct pvtChainOptions {
     int maxTriangles; ///< ≥ 1: longer links are not kept; default 64
     double minArea;   ///< [vx²] in (u, v): polygons smaller than this are skipped; default 1
-    const pvtBitmap* allowed; ///< the cells of the original polygon's slice, or more; borrowed
-    int cellsPerVoxel;
+    const pvtBitmap* allowed; ///< the cells of the original polygon's slice, or more; null: the
+                              ///< polygon only ever shrinks; borrowed; default null
+    int cellsPerVoxel;        ///< of allowed: 1, 2 or 4; default 1
 } pvtChainOptions;
 
-/// Chains, one polygon each: points starts[c] to starts[c + 1] − 1 with their ranks. A chain's
-/// longest link is its polygon simplified to maxTriangles or fewer.
+/// Chains, one polygon each: points starts[c] to starts[c + 1] − 1. The link of t triangles is made
+/// of the points with ranks[i] ≤ t + 2 ≤ limits[i], in order. A chain's longest link is its polygon
+/// simplified to maxTriangles or fewer.
 typedef struct pvtChainSet {
     pvtPoint2* points;
-    uint32_t* ranks; ///< one a point
+    uint32_t* ranks;  ///< one a point: least number of points of the links that have it
+    uint32_t* limits; ///< and the greatest; UINT32_MAX for the points of the longest link
     size_t pointCount;
     size_t* starts; ///< count + 1
     size_t count;
@@ -234,9 +234,11 @@ typedef struct pvtChainSet {
 
 PVT_API pvtChainOptions pvtDefaultChainOptions(void);
 
-/// From each polygon down to one triangle (paper, section 4.4): removes the point whose triangle
-/// with its neighbours has the least area, such that the link stays simple and within the
-/// allowed cells.
+/// From each polygon down to one triangle (paper, section 4.4). Each step takes out the point whose
+/// triangle with its neighbours has the least area, or an edge whose neighbours are lengthened until
+/// they meet, if that costs less, such that the link stays weakly simple and within the allowed
+/// cells. What adds area within the allowed cells goes before what costs any. Polygons must be
+/// weakly simple: others are skipped.
 PVT_API pvtStatus pvtBuildChains(pvtContext* context, const pvtChainOptions* options,
                                  const pvtLoopSet* polygons, pvtChainSet* chains);
 PVT_API void pvtChainSet_Free(pvtContext* context, pvtChainSet* chains);
@@ -248,7 +250,8 @@ PVT_API size_t pvtChainSet_GetLink(const pvtChainSet* chains, size_t chain, int 
 
 /// Triangulates a weakly simple counter-clockwise polygon of count ≥ 3 points into count − 2
 /// counter-clockwise triangles by ear clipping, exact. `indices` has room for 3 × (count − 2).
-/// PVT_INVALID_ARGUMENT when the polygon is not weakly simple.
+/// Ears with the greatest least angle go first; a triangle without area only comes of points that
+/// no other can have. PVT_INVALID_ARGUMENT when no ear is left: the polygon crosses itself.
 PVT_API pvtStatus pvtTriangulatePolygon(pvtContext* context, const pvtPoint2* points, size_t count,
                                         uint32_t* indices);
 

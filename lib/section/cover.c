@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Which cells a triangle touches: row by row, the least and the greatest x that the triangle has
+// between the row's two borders, as fractions, rounded outwards to whole cells.
+#include "cover.h"
+
+#include "base/bits.h"
+#include "predicates.h"
+
+// A range of cells; empty when end ≤ begin.
+typedef struct CellRange {
+    int64_t begin, end;
+} CellRange;
+
+// Widens the range by the part of an edge that lies in low ≤ y ≤ high.
+static void AddEdge(CellRange* range, pvtPoint2 p, pvtPoint2 q, const int64_t strip[2],
+                    int32_t unit)
+{
+    const pvtPoint2 lower = p.y < q.y ? p : q, upper = p.y < q.y ? q : p;
+    const int64_t from = pvtMaxInt64(strip[0], lower.y), to = pvtMinInt64(strip[1], upper.y);
+    if (lower.y == upper.y || from > to) {
+        return; // the ends of a level edge are ends of the other two edges as well
+    }
+    const int64_t height = (int64_t)upper.y - lower.y, width = (int64_t)upper.x - lower.x;
+    const int64_t divisor = height * unit;
+    const int64_t base = lower.x * height;
+    const int64_t left = base + width * ((width < 0 ? to : from) - lower.y);
+    const int64_t right = base + width * ((width < 0 ? from : to) - lower.y);
+    range->begin = pvtMinInt64(range->begin, pvtFloorDivide(left, divisor));
+    range->end = pvtMaxInt64(range->end, pvtCeilDivide(right, divisor));
+}
+
+static bool IsRowCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3],
+                         int64_t row)
+{
+    const int64_t strip[2] = {row * unit, (row + 1) * unit};
+    CellRange range = {INT64_MAX, INT64_MIN};
+    for (int i = 0; i < 3; ++i) {
+        AddEdge(&range, corners[i], corners[i == 2 ? 0 : i + 1], strip, unit);
+    }
+    if (range.begin < 0 || range.end > cells->width) {
+        return false;
+    }
+    const uint64_t* words = cells->words + (size_t)row * cells->wordsPerRow;
+    return pvtIsBitRangeSet(words, (size_t)range.begin, (size_t)range.end);
+}
+
+bool pvtIsTriangleCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3])
+{
+    if (pvtOrient(corners[0], corners[1], corners[2]) == 0) {
+        return true;
+    }
+    const int32_t y0 = corners[0].y, y1 = corners[1].y, y2 = corners[2].y;
+    const int64_t first = pvtFloorDivide(pvtMinInt64(y0, pvtMinInt64(y1, y2)), unit);
+    const int64_t end = pvtCeilDivide(pvtMaxInt64(y0, pvtMaxInt64(y1, y2)), unit);
+    if (first < 0 || end > cells->height) {
+        return false;
+    }
+    for (int64_t row = first; row < end; ++row) {
+        if (!IsRowCovered(cells, unit, corners, row)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#ifndef PVT_SECTION_COVER_H
+#define PVT_SECTION_COVER_H
+
+#include <paravent/section.h>
+
+/// True when every cell whose interior the triangle touches is set; exact. A cell is `unit` point
+/// units wide. The triangle may wind either way; one without area touches nothing.
+bool pvtIsTriangleCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3]);
+
+#endif
