@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// The glTF reader: each step trusts only what the steps before it have checked.
+#include "gltf_geometry.hpp"
+#include "gltf_nodes.hpp"
+
+#include <map>
+
+namespace pvt
+{
+
+namespace
+{
+
+Json ParseJson(const pvtLoadJob& job, const Span& text)
+{
+    try {
+        return Json::parse(text.bytes, text.bytes + text.size);
+    } catch (const Json::exception& error) {
+        Refuse(job, "the JSON is not valid: %s", Clean(error.what()).c_str());
+    }
+}
+
+class OwnedBuilder
+{
+  public:
+    OwnedBuilder(const pvtLoadJob& job)
+    {
+        builder.context = job.context;
+        builder.path = job.path;
+    }
+    ~OwnedBuilder()
+    {
+        pvtModelBuilder_Free(&builder);
+    }
+    OwnedBuilder(const OwnedBuilder&) = delete;
+    OwnedBuilder& operator=(const OwnedBuilder&) = delete;
+    pvtModelBuilder builder{};
+};
+
+// A mesh and how many instances of it are still to be placed.
+struct UsedMesh {
+    GltfMesh mesh;
+    std::size_t uses;
+};
+
+std::map<std::size_t, UsedMesh> DecodeMeshes(GltfDecoder& decoder,
+                                             const std::vector<GltfInstance>& instances)
+{
+    std::map<std::size_t, UsedMesh> meshes;
+    for (const GltfInstance& instance : instances) {
+        auto found = meshes.find(instance.mesh);
+        if (found == meshes.end()) {
+            found = meshes.emplace(instance.mesh, UsedMesh{decoder.Decode(instance.mesh), 0}).first;
+        }
+        ++found->second.uses;
+    }
+    return meshes;
+}
+
+void PlaceInstances(const std::vector<GltfInstance>& instances,
+                    std::map<std::size_t, UsedMesh>& meshes, pvtModelBuilder& builder)
+{
+    std::size_t positionCount = 0, triangleCount = 0;
+    for (const auto& [index, used] : meshes) {
+        positionCount += used.mesh.positions.Size() * used.uses;
+        triangleCount += used.mesh.indices.Size() / 3 * used.uses;
+    }
+    Check(pvtModelBuilder_Reserve(&builder, positionCount, triangleCount, instances.size()));
+    for (const GltfInstance& instance : instances) {
+        UsedMesh& used = meshes.at(instance.mesh);
+        const pvtLocalMesh mesh = used.mesh.View();
+        Check(pvtModelBuilder_AddPart(&builder, instance.name.c_str(), instance.mesh,
+                                      instance.transform.data(), &mesh));
+        if (--used.uses == 0) {
+            used.mesh.positions.Clear();
+            used.mesh.indices.Clear();
+        }
+    }
+}
+
+void LoadGltf(const pvtLoadJob& job, pvtModel* model)
+{
+    const GltfContainer container = OpenGltfContainer(job);
+    Json document = ParseJson(job, container.json);
+    CheckGltfSchema(job, document);
+    GltfData data(job, document, container);
+    const tinygltf::Model parsed = ParseGltfModel(job, document);
+    const GltfFile file{job, document, parsed, data};
+    pvtReportProgress(job.context, 0.6);
+
+    const std::vector<GltfInstance> instances = FindGltfInstances(file);
+    GltfDecoder decoder(file);
+    std::map<std::size_t, UsedMesh> meshes = DecodeMeshes(decoder, instances);
+    pvtReportProgress(job.context, 0.8);
+
+    OwnedBuilder owned(job);
+    PlaceInstances(instances, meshes, owned.builder);
+    if (owned.builder.model.mesh.triangleCount == 0 && owned.builder.dropped == 0) {
+        decoder.RefuseIfAllOmitted();
+        Refuse(job, "there is no triangle: %s; %s",
+               instances.empty() ? "no node of the scene has a mesh"
+                                 : "the scene's meshes hold at most points and lines",
+               parsed.scenes.size() > 1 ? "choose another scene by --scene"
+                                        : "export the model with its surfaces");
+    }
+    decoder.WarnOfOmissions();
+    Check(pvtModelBuilder_Finish(&owned.builder, model));
+}
+
+} // namespace
+
+} // namespace pvt
+
+pvtStatus pvtLoadGltf(const pvtLoadJob* job, pvtModel* model)
+{
+    return pvt::Guard(job->context, job->path, [&] { pvt::LoadGltf(*job, model); });
+}

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+// The node tree: glTF 2.0, sections 3.5.2 to 3.5.3 and 3.7.3. Walked with a stack of its own, since
+// a file decides how deep it is.
+#include "gltf_nodes.hpp"
+
+#include "builder.h"
+
+#include <algorithm>
+
+namespace pvt
+{
+
+namespace
+{
+
+constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+constexpr std::size_t kPollNodes = 1 << 12;
+
+Transform Multiply(const Transform& a, const Transform& b)
+{
+    Transform product;
+    pvtMultiplyTransforms(a.data(), b.data(), product.data());
+    return product;
+}
+
+// Translation × rotation × scale. A quaternion that is not of unit length is taken for the rotation
+// that it is nearest to; one of no length for none.
+Transform Compose(const double t[3], const double q[4], const double s[3])
+{
+    const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    const double k = norm > 0.0 ? 2.0 / norm : 0.0;
+    const double xx = k * q[0] * q[0], yy = k * q[1] * q[1], zz = k * q[2] * q[2];
+    const double xy = k * q[0] * q[1], xz = k * q[0] * q[2], yz = k * q[1] * q[2];
+    const double wx = k * q[3] * q[0], wy = k * q[3] * q[1], wz = k * q[3] * q[2];
+    return {s[0] * (1 - yy - zz),
+            s[0] * (xy + wz),
+            s[0] * (xz - wy),
+            0,
+            s[1] * (xy - wz),
+            s[1] * (1 - xx - zz),
+            s[1] * (yz + wx),
+            0,
+            s[2] * (xz + wy),
+            s[2] * (yz - wx),
+            s[2] * (1 - xx - yy),
+            0,
+            t[0],
+            t[1],
+            t[2],
+            1};
+}
+
+Transform GetLocalTransform(const tinygltf::Node& node)
+{
+    if (node.matrix.size() == 16) {
+        Transform transform;
+        std::copy(node.matrix.begin(), node.matrix.end(), transform.begin());
+        return transform;
+    }
+    double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+    std::copy_n(node.translation.begin(), std::min<std::size_t>(3, node.translation.size()), t);
+    std::copy_n(node.rotation.begin(), std::min<std::size_t>(4, node.rotation.size()), q);
+    std::copy_n(node.scale.begin(), std::min<std::size_t>(3, node.scale.size()), s);
+    return Compose(t, q, s);
+}
+
+class Walker
+{
+  public:
+    explicit Walker(const GltfFile& file)
+        : file_(file), nodes_(file.model.nodes), parents_(nodes_.size(), kNone),
+          globals_(nodes_.size(), kIdentity)
+    {
+        FindParents();
+        ComputeGlobals();
+    }
+
+    std::vector<GltfInstance> Walk()
+    {
+        FindRoots();
+        std::vector<Visit> stack;
+        PushReversed(roots_, WantedNode().empty(), stack);
+        for (std::size_t count = 0; !stack.empty(); ++count) {
+            if (count % kPollNodes == 0) {
+                Poll(file_.job.context);
+            }
+            const Visit visit = stack.back();
+            stack.pop_back();
+            const tinygltf::Node& node = nodes_[visit.node];
+            const bool wanted = visit.wanted || node.name == WantedNode();
+            found_ = found_ || wanted;
+            if (wanted && node.mesh >= 0) {
+                AddInstance(visit.node);
+            }
+            PushReversed(node.children, wanted, stack);
+        }
+        RefuseUnlessFound();
+        if (skinned_ > 0) {
+            Warn(file_.job, "%zu skinned meshes; their bind pose is taken", skinned_);
+        }
+        return std::move(instances_);
+    }
+
+  private:
+    struct Visit {
+        std::size_t node;
+        bool wanted; // the node asked for, or below it
+    };
+
+    std::string WantedNode() const
+    {
+        return file_.job.options->node != nullptr ? file_.job.options->node : "";
+    }
+
+    static void PushReversed(const std::vector<int>& nodes, bool wanted, std::vector<Visit>& stack)
+    {
+        for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) {
+            stack.push_back({static_cast<std::size_t>(*it), wanted});
+        }
+    }
+
+    void FindParents()
+    {
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            for (const int child : nodes_[i].children) {
+                std::size_t& parent = parents_[static_cast<std::size_t>(child)];
+                if (parent != kNone) {
+                    Refuse(file_.job,
+                           "nodes[%d] is a child of nodes[%zu] and of nodes[%zu]; a node"
+                           " may have one parent",
+                           child, parent, i);
+                }
+                parent = i;
+            }
+        }
+    }
+
+    // From the roots down. With one parent each, what is not reached lies in a cycle.
+    void ComputeGlobals()
+    {
+        std::vector<std::size_t> queue;
+        queue.reserve(nodes_.size());
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            if (parents_[i] == kNone) {
+                queue.push_back(i);
+            }
+        }
+        std::vector<char> reached(nodes_.size(), 0);
+        for (std::size_t at = 0; at < queue.size(); ++at) {
+            const std::size_t i = queue[at];
+            const Transform local = GetLocalTransform(nodes_[i]);
+            globals_[i] = parents_[i] == kNone ? local : Multiply(globals_[parents_[i]], local);
+            reached[i] = 1;
+            queue.insert(queue.end(), nodes_[i].children.begin(), nodes_[i].children.end());
+        }
+        const auto lost = std::find(reached.begin(), reached.end(), 0);
+        if (lost != reached.end()) {
+            Refuse(file_.job, "nodes[%td] is an ancestor of itself", lost - reached.begin());
+        }
+    }
+
+    // Those of the scene asked for; of a file without scenes, every node without a parent.
+    void FindRoots()
+    {
+        const auto& scenes = file_.model.scenes;
+        const int asked = file_.job.options->scene;
+        if (asked >= 0 && static_cast<std::size_t>(asked) >= scenes.size()) {
+            Refuse(file_.job, PVT_INVALID_ARGUMENT, "there is no scene %d; the file has %zu", asked,
+                   scenes.size());
+        }
+        if (scenes.empty()) {
+            for (std::size_t i = 0; i < nodes_.size(); ++i) {
+                if (parents_[i] == kNone) {
+                    roots_.push_back(static_cast<int>(i));
+                }
+            }
+            return;
+        }
+        const int scene = asked >= 0 ? asked : std::max(file_.model.defaultScene, 0);
+        roots_ = scenes[static_cast<std::size_t>(scene)].nodes;
+        CheckRoots(scene);
+    }
+
+    void CheckRoots(int scene) const
+    {
+        std::vector<char> seen(nodes_.size(), 0);
+        for (const int root : roots_) {
+            const std::size_t i = static_cast<std::size_t>(root);
+            if (parents_[i] != kNone) {
+                Refuse(file_.job,
+                       "scenes[%d] lists nodes[%d], which is not a root but a child of "
+                       "nodes[%zu]",
+                       scene, root, parents_[i]);
+            }
+            if (seen[i] != 0) {
+                Refuse(file_.job, "scenes[%d] lists nodes[%d] twice", scene, root);
+            }
+            seen[i] = 1;
+        }
+    }
+
+    void RefuseUnlessFound() const
+    {
+        if (found_ || WantedNode().empty()) {
+            return;
+        }
+        const bool elsewhere = std::any_of(nodes_.begin(), nodes_.end(), [&](const auto& node) {
+            return node.name == WantedNode();
+        });
+        Refuse(file_.job, PVT_INVALID_ARGUMENT, "there is no node named \"%s\"%s",
+               Clean(WantedNode()).c_str(),
+               elsewhere ? " in this scene, but in another; choose it by --scene" : "");
+    }
+
+    void AddInstance(std::size_t index)
+    {
+        const tinygltf::Node& node = nodes_[index];
+        const std::size_t mesh = static_cast<std::size_t>(node.mesh);
+        const std::string& meshName = file_.model.meshes[mesh].name;
+        const std::string name = !node.name.empty()  ? node.name
+                                 : !meshName.empty() ? meshName
+                                                     : "node_" + std::to_string(index);
+        Transform transform = globals_[index];
+        if (node.skin >= 0) {
+            ++skinned_;
+            transform = GetBindTransform(static_cast<std::size_t>(node.skin));
+        }
+        instances_.push_back({name, mesh, transform});
+    }
+
+    // A skinned mesh ignores its node's transform. In the bind pose all joints move it alike, as
+    // the first does: by what the joint stands at, after what took the mesh to the joint's space.
+    Transform GetBindTransform(std::size_t index) const
+    {
+        const tinygltf::Skin& skin = file_.model.skins[index];
+        if (skin.joints.empty()) {
+            Refuse(file_.job, "skins[%zu] has no joints", index);
+        }
+        Transform inverse = kIdentity;
+        if (skin.inverseBindMatrices >= 0) {
+            const GltfAccessor matrices(file_, static_cast<std::size_t>(skin.inverseBindMatrices));
+            if (!matrices.Is(TINYGLTF_TYPE_MAT4) ||
+                matrices.ComponentType() != TINYGLTF_COMPONENT_TYPE_FLOAT ||
+                matrices.Count() < skin.joints.size()) {
+                Refuse(file_.job,
+                       "skins[%zu].inverseBindMatrices are not a MAT4 of FLOAT for each "
+                       "of %zu joints",
+                       index, skin.joints.size());
+            }
+            for (std::size_t k = 0; k < 16; ++k) {
+                inverse[k] = matrices.GetNumber(0, k);
+            }
+        }
+        return Multiply(globals_[static_cast<std::size_t>(skin.joints[0])], inverse);
+    }
+
+    const GltfFile& file_;
+    const std::vector<tinygltf::Node>& nodes_;
+    std::vector<std::size_t> parents_;
+    std::vector<Transform> globals_;
+    std::vector<int> roots_;
+    std::vector<GltfInstance> instances_;
+    std::size_t skinned_ = 0;
+    bool found_ = false;
+};
+
+} // namespace
+
+std::vector<GltfInstance> FindGltfInstances(const GltfFile& file)
+{
+    return Walker(file).Walk();
+}
+
+} // namespace pvt

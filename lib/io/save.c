@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// What is saved is checked first, so that writers only write.
+#include "formats.h"
+#include "text.h"
+
+#include "base/context.h"
+
+#include <float.h>
+#include <math.h>
+
+typedef enum Format { FORMAT_NONE, FORMAT_GLB, FORMAT_GLTF, FORMAT_OBJ, FORMAT_PLY } Format;
+
+static Format GetFormat(const char* path)
+{
+    static const struct {
+        const char* ending;
+        Format format;
+    } formats[] = {
+        {".glb", FORMAT_GLB}, {".gltf", FORMAT_GLTF}, {".obj", FORMAT_OBJ}, {".ply", FORMAT_PLY}};
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; ++i) {
+        if (pvtHasEnding(path, formats[i].ending)) {
+            return formats[i].format;
+        }
+    }
+    return FORMAT_NONE;
+}
+
+bool pvtCanSaveModel(const char* path)
+{
+    return GetFormat(path) != FORMAT_NONE;
+}
+
+static bool FitsFloat(pvtVec3 p)
+{
+    return fabs(p.x) <= FLT_MAX && fabs(p.y) <= FLT_MAX && fabs(p.z) <= FLT_MAX;
+}
+
+static pvtStatus CheckMesh(pvtContext* context, const char* name, const pvtMesh* mesh)
+{
+    if (mesh == NULL || mesh->triangleCount == 0) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT, "\"%s\" has no triangle to save", name);
+    }
+    for (size_t i = 0; i < mesh->positionCount; ++i) {
+        if (!FitsFloat(mesh->positions[i])) {
+            return pvtFail(context, PVT_INVALID_ARGUMENT,
+                           "\"%s\": position %zu does not fit in a float", name, i);
+        }
+    }
+    for (size_t i = 0; i < 3 * mesh->triangleCount; ++i) {
+        if (mesh->indices[i] >= mesh->positionCount) {
+            return pvtFail(context, PVT_INVALID_ARGUMENT,
+                           "\"%s\": index %zu is %u, but there are %zu positions", name, i,
+                           mesh->indices[i], mesh->positionCount);
+        }
+    }
+    return PVT_OK;
+}
+
+static pvtStatus CheckItems(const pvtSaveJob* job)
+{
+    if (job->count == 0) {
+        return pvtFail(job->context, PVT_INVALID_ARGUMENT, "there is nothing to save");
+    }
+    for (size_t i = 0; i < job->count; ++i) {
+        const pvtSaveItem* item = &job->items[i];
+        char name[PVT_NAME_SIZE];
+        pvtCleanName(item->name != NULL ? item->name : "", name);
+        const pvtStatus status = CheckMesh(job->context, name, item->mesh);
+        if (status != PVT_OK) {
+            return status;
+        }
+    }
+    return PVT_OK;
+}
+
+static pvtStatus Write(const pvtSaveJob* job, Format format, pvtOutput* output)
+{
+    switch (format) {
+    case FORMAT_GLB:
+    case FORMAT_GLTF:
+        return pvtWriteGltf(job, format == FORMAT_GLB, output);
+    case FORMAT_OBJ:
+        return pvtWriteObj(job, output);
+    case FORMAT_PLY:
+    case FORMAT_NONE:
+        break;
+    }
+    return pvtWritePly(job, output);
+}
+
+pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem* items,
+                       size_t count)
+{
+    const Format format = GetFormat(path);
+    if (format == FORMAT_NONE) {
+        return pvtFail(context, PVT_UNSUPPORTED,
+                       "%s: only names that end in .glb, .gltf, .obj or .ply can be written", path);
+    }
+    const pvtSaveJob job = {context, items, count};
+    pvtStatus status = CheckItems(&job);
+    if (status != PVT_OK) {
+        return status;
+    }
+    pvtOutput* output = NULL;
+    status = pvtOpenOutput(context, path, &output);
+    if (status != PVT_OK) {
+        return status;
+    }
+    status = Write(&job, format, output);
+    if (status != PVT_OK) {
+        pvtDiscardOutput(output);
+        return status;
+    }
+    return pvtCommitOutput(output);
+}
