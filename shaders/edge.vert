@@ -22,8 +22,9 @@ void main()
     vec2 beyond = along * (which == 0 ? -0.5 : 0.5);
     vec4 corner = ends[which];
     corner.xy += (across + beyond) * width * color.a * pixel * corner.w;
-    // Nearer by a hair, so that an edge wins over the polygons that it bounds.
-    corner.z -= 0.0008 * corner.w;
+    // Nearer by a hair, so that an edge wins over the polygons that it bounds, and a wide one over
+    // the thin ones that end there.
+    corner.z -= 0.0008 * color.a * corner.w;
     gl_Position = corner;
     paint = color.rgb;
 }

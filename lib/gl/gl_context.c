@@ -170,7 +170,8 @@ pvtStatus pvtEnterGl(pvtContext* context, pvtGl* gl)
                        gl->name);
     }
     const pvtGlFunctions* f = &gl->functions;
-    const GLenum switches[] = {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER, GL_STENCIL_TEST};
+    const GLenum switches[] = {GL_BLEND,  GL_CULL_FACE,    GL_DEPTH_TEST,
+                               GL_DITHER, GL_SCISSOR_TEST, GL_STENCIL_TEST};
     for (size_t i = 0; i < sizeof switches / sizeof switches[0]; ++i) {
         f->Disable(switches[i]);
     }

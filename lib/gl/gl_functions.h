@@ -37,7 +37,6 @@
     X(DRAWELEMENTS, DrawElements)                                                                  \
     X(ENABLE, Enable)                                                                              \
     X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)                                            \
-    X(FINISH, Finish)                                                                              \
     X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D)                                                  \
     X(FRONTFACE, FrontFace)                                                                        \
     X(GENBUFFERS, GenBuffers)                                                                      \
@@ -56,6 +55,7 @@
     X(PIXELSTOREI, PixelStorei)                                                                    \
     X(READBUFFER, ReadBuffer)                                                                      \
     X(READPIXELS, ReadPixels)                                                                      \
+    X(SCISSOR, Scissor)                                                                            \
     X(SHADERSOURCE, ShaderSource)                                                                  \
     X(STENCILFUNC, StencilFunc)                                                                    \
     X(STENCILOPSEPARATE, StencilOpSeparate)                                                        \

@@ -13,8 +13,8 @@ enum {
     COLUMNS = 3,
     SMALLEST_TILE = 64,
     LARGEST_TILE = 2048,
-    // Samples a pixel along x and along y.
-    SIDE = 3,
+    // Pixels that are lit at a time, a few milliseconds without a graphics card.
+    BAND_PIXELS = 1 << 15,
     // Triangles a draw call: few enough to stop soon when cancelled.
     DRAW_TRIANGLES = 1 << 16,
 };
@@ -30,6 +30,7 @@ typedef struct Preview {
     pvtContext* context;
     pvtGl* gl;
     int tileSize;
+    int side; // samples a pixel along x and along y
     pvtPreviewSpace space;
     const pvtMesh* original;
     pvtPreviewPoint* points; // of the original
@@ -183,7 +184,7 @@ static pvtStatus GetPrograms(Preview* preview)
 
 static pvtStatus CreateTargets(Preview* preview)
 {
-    const int size = preview->tileSize * SIDE;
+    const int size = preview->tileSize * preview->side;
     const pvtGlTargetDef samples = {size, size, GL_RGBA8, GL_DEPTH_COMPONENT32F};
     const pvtGlTargetDef pixels = {preview->tileSize, preview->tileSize, GL_RGBA8, 0};
     pvtStatus status =
@@ -250,23 +251,24 @@ static pvtStatus DrawOccluder(const Preview* preview, const pvtPreviewCamera* ca
     return PVT_OK;
 }
 
-// Edges behind other polygons shine through them faintly; those in front are drawn over.
+// Outlines behind other polygons shine through them faintly; edges in front are drawn over.
 static void DrawEdges(const Preview* preview, const pvtPreviewCamera* camera)
 {
     const pvtGlFunctions* f = &preview->gl->functions;
     const GLuint program = preview->edgeProgram;
-    const float size = (float)(preview->tileSize * SIDE);
+    const float size = (float)(preview->tileSize * preview->side);
     const float scale = fmaxf(1.0F, (float)preview->tileSize / 480.0F);
     UseProgram(f, program, camera);
     f->Uniform2f(f->GetUniformLocation(program, "pixel"), 2.0F / size, 2.0F / size);
-    f->Uniform1f(f->GetUniformLocation(program, "width"), (float)(EDGE_WIDTH * SIDE) * scale);
+    f->Uniform1f(f->GetUniformLocation(program, "width"),
+                 (float)(EDGE_WIDTH * preview->side) * scale);
     f->BindVertexArray(preview->edgeBuffer.vertexArray);
     f->DepthMask(GL_FALSE);
     f->Enable(GL_BLEND);
     f->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     f->DepthFunc(GL_GREATER);
     f->Uniform1f(f->GetUniformLocation(program, "opacity"), 0.3F);
-    f->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)preview->paint.edgeCount);
+    f->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)preview->paint.outlineCount);
     f->Disable(GL_BLEND);
     f->DepthMask(GL_TRUE);
     f->DepthFunc(GL_LEQUAL);
@@ -283,7 +285,7 @@ static void BindTexture(const pvtGlFunctions* f, GLuint program, int unit, const
     f->Uniform1i(f->GetUniformLocation(program, name), unit);
 }
 
-static void ResolveTile(const Preview* preview, const pvtPreviewCamera* camera)
+static void PrepareResolve(const Preview* preview, const pvtPreviewCamera* camera)
 {
     const pvtGlFunctions* f = &preview->gl->functions;
     const GLuint program = preview->resolveProgram;
@@ -294,15 +296,34 @@ static void ResolveTile(const Preview* preview, const pvtPreviewCamera* camera)
     BindTexture(f, program, 1, "depths", preview->originalTarget.depth);
     BindTexture(f, program, 2, "occluder", preview->occluderTarget.color);
     BindTexture(f, program, 3, "occluderDepths", preview->occluderTarget.depth);
-    f->Uniform1i(f->GetUniformLocation(program, "side"), SIDE);
+    f->Uniform1i(f->GetUniformLocation(program, "side"), preview->side);
     f->Uniform3f(f->GetUniformLocation(program, "range"), camera->nearest, camera->farthest,
                  camera->perspective ? 1.0F : 0.0F);
     f->Uniform2f(f->GetUniformLocation(program, "reach"), camera->reach[0], camera->reach[1]);
     f->Uniform3f(f->GetUniformLocation(program, "up"), camera->up[0], camera->up[1], camera->up[2]);
     f->BindVertexArray(preview->originalBuffer.vertexArray);
-    f->DrawArrays(GL_TRIANGLES, 0, 3);
-    f->ReadPixels(0, 0, preview->tileSize, preview->tileSize, GL_RGBA, GL_UNSIGNED_BYTE,
-                  preview->tile);
+}
+
+// Band by band, each read back at once: a driver would else take the whole tile before it noticed
+// that we are cancelled.
+static pvtStatus ResolveTile(const Preview* preview, const pvtPreviewCamera* camera)
+{
+    const pvtGlFunctions* f = &preview->gl->functions;
+    const int size = preview->tileSize, most = BAND_PIXELS / size;
+    PrepareResolve(preview, camera);
+    f->Enable(GL_SCISSOR_TEST);
+    for (int y = 0; y < size; y += most) {
+        if (pvtIsCancelled(preview->context)) {
+            return pvtFailCancelled(preview->context);
+        }
+        const int rows = size - y < most ? size - y : most;
+        f->Scissor(0, y, size, rows);
+        f->DrawArrays(GL_TRIANGLES, 0, 3);
+        f->ReadPixels(0, y, size, rows, GL_RGBA, GL_UNSIGNED_BYTE,
+                      preview->tile + 4 * (size_t)y * (size_t)size);
+    }
+    f->Disable(GL_SCISSOR_TEST);
+    return pvtCheckGl(preview->context, preview->gl, "draw a preview");
 }
 
 // Copies the tile into its place, the top row first, with a line where it meets its neighbours.
@@ -340,8 +361,7 @@ static pvtStatus RenderTile(const Preview* preview, int view, pvtImage* image)
         return status;
     }
     DrawEdges(preview, &camera);
-    ResolveTile(preview, &camera);
-    status = pvtCheckGl(preview->context, preview->gl, "draw a preview");
+    status = ResolveTile(preview, &camera);
     if (status == PVT_OK) {
         PlaceTile(preview, view, image);
     }
@@ -422,6 +442,7 @@ pvtStatus pvtRenderPreview(pvtContext* context, pvtGl* gl, const pvtPreviewOptio
     }
     pvtBeginStage(context, "preview");
     Preview preview = {.context = context, .gl = gl, .tileSize = tileSize, .original = original};
+    preview.side = tileSize <= 1024 ? 3 : 2;
     preview.space = pvtMakePreviewSpace(options->up, original, occluder);
     const pvtStatus status = RenderPreview(&preview, occluder, image);
     pvtPreviewPaint_Free(context, &preview.paint);

@@ -33,11 +33,13 @@ pvtPreviewSpace pvtMakePreviewSpace(pvtAxis up, const pvtMesh* original, const p
 pvtPreviewPoint pvtPreviewSpace_Map(const pvtPreviewSpace* space, pvtVec3 position);
 
 /// The occluder in colours: a colour for each run of triangles on one plane, and the edges of those
-/// runs, wide where a run ends and thin within. An occluder of very many triangles has no edges.
+/// runs: wide ones around a run, then thin ones within. An occluder of very many triangles has
+/// none.
 typedef struct pvtPreviewPaint {
     pvtPreviewVertex* vertices; // 3 × triangleCount
     pvtPreviewEdge* edges;
     size_t vertexCount, edgeCount;
+    size_t outlineCount; // the first of the edges
 } pvtPreviewPaint;
 
 pvtStatus pvtPaintOccluder(pvtContext* context, const pvtPreviewSpace* space,

@@ -120,11 +120,19 @@ static pvtPreviewEdge MakeEdge(pvtPreviewPoint a, pvtPreviewPoint b)
     return edge;
 }
 
-// Adds each edge of a run once: wide where one triangle has it, thin where two share it.
-static void AddEdges(pvtPreviewPaint* paint, size_t first, size_t end, size_t run)
+// What the runs are painted with.
+typedef struct Painter {
+    pvtPreviewPaint* paint;
+    pvtPreviewEdge* scratch; // of one run; null: no edges are wanted
+    size_t innerCount;       // at the end of the edges, backwards, until all are there
+} Painter;
+
+// Adds each edge of a run once: as an outline where one triangle has it, else as an inner one.
+static void AddEdges(Painter* painter, size_t first, size_t end, size_t run)
 {
-    pvtPreviewEdge* edges = paint->edges + paint->edgeCount;
-    size_t count = 0, kept = 0;
+    pvtPreviewPaint* paint = painter->paint;
+    pvtPreviewEdge* edges = painter->scratch;
+    size_t count = 0;
     for (size_t t = first; t < end; ++t) {
         const pvtPreviewVertex* corners = paint->vertices + 3 * t;
         for (int i = 0; i < 3; ++i) {
@@ -134,38 +142,40 @@ static void AddEdges(pvtPreviewPaint* paint, size_t first, size_t end, size_t ru
     qsort(edges, count, sizeof *edges, CompareEdges);
     uint8_t outline[4], inner[4];
     MakeColor(0.36, 0.11, GetHue(run), outline);
-    MakeColor(0.50, 0.13, GetHue(run), inner);
+    MakeColor(0.52, 0.14, GetHue(run), inner);
     inner[3] = 110;
-    for (size_t i = 0; i < count;) {
-        size_t next = i + 1;
-        while (next < count && CompareEdges(&edges[i], &edges[next]) == 0) {
+    for (size_t i = 0, next; i < count; i = next) {
+        for (next = i + 1; next < count && CompareEdges(&edges[i], &edges[next]) == 0;) {
             ++next;
         }
-        edges[kept] = edges[i];
-        memcpy(edges[kept++].color, next - i == 1 ? outline : inner, sizeof outline);
-        i = next;
+        memcpy(edges[i].color, next - i == 1 ? outline : inner, sizeof outline);
+        if (next - i == 1) {
+            paint->edges[paint->outlineCount++] = edges[i];
+        } else {
+            paint->edges[paint->vertexCount - ++painter->innerCount] = edges[i];
+        }
     }
-    paint->edgeCount += kept;
 }
 
-static void PaintRun(pvtPreviewPaint* paint, size_t first, size_t end, size_t run)
+static void PaintRun(Painter* painter, size_t first, size_t end, size_t run)
 {
-    PaintFill(paint->vertices, first, end, run);
-    if (paint->edges != NULL) {
-        AddEdges(paint, first, end, run);
+    PaintFill(painter->paint->vertices, first, end, run);
+    if (painter->scratch != NULL) {
+        AddEdges(painter, first, end, run);
     }
 }
 
 // Cuts the triangles, in order, into runs that share a plane.
-static void PaintRuns(pvtPreviewPaint* paint)
+static void PaintRuns(Painter* painter)
 {
+    pvtPreviewPaint* paint = painter->paint;
     const size_t count = paint->vertexCount / 3;
     size_t first = 0, run = 0;
     Reference reference = {0};
     for (size_t t = 0; t < count; ++t) {
         const Reference next = MakeReference(paint->vertices + 3 * t);
         if (t > first && !SharePlane(&reference, &next)) {
-            PaintRun(paint, first, t, run++);
+            PaintRun(painter, first, t, run++);
             first = t;
         }
         if (t == first || next.area > reference.area) {
@@ -173,31 +183,51 @@ static void PaintRuns(pvtPreviewPaint* paint)
         }
     }
     if (count > 0) {
-        PaintRun(paint, first, count, run);
+        PaintRun(painter, first, count, run);
     }
+    paint->edgeCount = paint->outlineCount + painter->innerCount;
+    if (painter->innerCount > 0) {
+        memmove(paint->edges + paint->outlineCount,
+                paint->edges + (paint->vertexCount - painter->innerCount),
+                painter->innerCount * sizeof *paint->edges);
+    }
+}
+
+static pvtStatus PaintAll(pvtContext* context, const pvtPreviewSpace* space,
+                          const pvtMesh* occluder, pvtPreviewPaint* paint)
+{
+    Painter painter = {.paint = paint};
+    paint->vertexCount = 3 * occluder->triangleCount;
+    paint->vertices = pvtAllocate(context, paint->vertexCount, sizeof *paint->vertices);
+    if (paint->vertices == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    if (occluder->triangleCount <= MOST_EDGED_TRIANGLES) {
+        paint->edges = pvtAllocate(context, paint->vertexCount, sizeof *paint->edges);
+        painter.scratch = pvtAllocate(context, paint->vertexCount, sizeof *painter.scratch);
+        if (paint->edges == NULL || painter.scratch == NULL) {
+            pvtRelease(context, painter.scratch);
+            return pvtContext_GetStatus(context);
+        }
+    }
+    for (size_t i = 0; i < paint->vertexCount; ++i) {
+        paint->vertices[i].at =
+            pvtPreviewSpace_Map(space, occluder->positions[occluder->indices[i]]);
+    }
+    PaintRuns(&painter);
+    pvtRelease(context, painter.scratch);
+    return PVT_OK;
 }
 
 pvtStatus pvtPaintOccluder(pvtContext* context, const pvtPreviewSpace* space,
                            const pvtMesh* occluder, pvtPreviewPaint* paint)
 {
     *paint = (pvtPreviewPaint){0};
-    const size_t count = 3 * occluder->triangleCount;
-    const bool edged = occluder->triangleCount <= MOST_EDGED_TRIANGLES;
-    pvtPreviewPaint made = {.vertexCount = count};
-    made.vertices = pvtAllocate(context, count, sizeof *made.vertices);
-    if (edged && made.vertices != NULL) {
-        made.edges = pvtAllocate(context, count, sizeof *made.edges);
+    const pvtStatus status = PaintAll(context, space, occluder, paint);
+    if (status != PVT_OK) {
+        pvtPreviewPaint_Free(context, paint);
     }
-    if (made.vertices == NULL || (edged && made.edges == NULL)) {
-        pvtPreviewPaint_Free(context, &made);
-        return pvtContext_GetStatus(context);
-    }
-    for (size_t i = 0; i < count; ++i) {
-        made.vertices[i].at = pvtPreviewSpace_Map(space, occluder->positions[occluder->indices[i]]);
-    }
-    PaintRuns(&made);
-    *paint = made;
-    return PVT_OK;
+    return status;
 }
 
 void pvtPreviewPaint_Free(pvtContext* context, pvtPreviewPaint* paint)

@@ -382,30 +382,34 @@ static void a_refused_allocation_leaks_nothing(void** state)
     }
 }
 
-static bool AlwaysCancel(void* user)
+static bool CancelLater(void* user)
 {
-    (void)user;
-    return true;
+    int* left = user;
+    return (*left)-- <= 0;
 }
 
 static void a_cancelled_preview_leaves_no_image(void** state)
 {
     (void)state;
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = AlwaysCancel;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-    pvtGl* gl = NULL;
-    CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
-    Box box;
-    MakeBox((pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &box);
-    const pvtPreviewOptions options = {.tileSize = 64, .up = PVT_AXIS_Y};
-    pvtImage image;
-    assert_int_equal(pvtRenderPreview(context, gl, &options, &box.mesh, &box.mesh, &image),
-                     PVT_CANCELLED);
-    assert_null(image.pixels);
-    pvtCloseGl(context, gl);
-    DestroyTestContext(context);
+    for (int later = 0; later < 5; ++later) {
+        int left = later;
+        pvtContextDef def = pvtDefaultContextDef();
+        def.isCancelled = CancelLater;
+        def.user = &left;
+        pvtContext* context = NULL;
+        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+        pvtGl* gl = NULL;
+        CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+        Box box;
+        MakeBox((pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &box);
+        const pvtPreviewOptions options = {.tileSize = 64, .up = PVT_AXIS_Y};
+        pvtImage image;
+        assert_int_equal(pvtRenderPreview(context, gl, &options, &box.mesh, &box.mesh, &image),
+                         PVT_CANCELLED);
+        assert_null(image.pixels);
+        pvtCloseGl(context, gl);
+        DestroyTestContext(context);
+    }
 }
 
 int main(void)
