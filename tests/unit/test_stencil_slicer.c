@@ -5,6 +5,7 @@
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/random.h"
+#include "stencil_check.h"
 
 #include <math.h>
 #include <paravent/gl.h>
@@ -75,65 +76,6 @@ static bool IsSet(const pvtBitGrid* grid, const int at[3])
     return pvtGetBit(grid->words + row, (size_t)at[0]);
 }
 
-// Four corners of the face between a set voxel and a clear one, wound towards the clear one.
-static void AddFace(pvtMesh* mesh, const pvtGridFrame* frame, const int voxel[3], int axis,
-                    bool upper)
-{
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const uint32_t first = (uint32_t)mesh->positionCount;
-    for (int corner = 0; corner < 4; ++corner) {
-        int at[3] = {voxel[0], voxel[1], voxel[2]};
-        at[axis] += upper;
-        at[u] += corner == 1 || corner == 2;
-        at[v] += corner >= 2;
-        mesh->positions[mesh->positionCount++] = (pvtVec3){
-            frame->origin.x + frame->voxelSize * at[0], frame->origin.y + frame->voxelSize * at[1],
-            frame->origin.z + frame->voxelSize * at[2]};
-    }
-    const uint32_t order[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 1, 2, 0, 2, 3}};
-    for (int i = 0; i < 6; ++i) {
-        mesh->indices[3 * mesh->triangleCount + (size_t)i] = first + order[upper][i];
-    }
-    mesh->triangleCount += 2;
-}
-
-static pvtMesh MakeVoxelMesh(pvtContext* context, const pvtBitGrid* grid)
-{
-    size_t voxels = 0;
-    for (size_t i = 0; i < grid->wordCount; ++i) {
-        voxels += (size_t)pvtCountBits(grid->words[i]);
-    }
-    pvtMesh mesh = {0};
-    mesh.positions = pvtAllocate(context, 24 * voxels, sizeof *mesh.positions);
-    mesh.indices = pvtAllocate(context, 36 * voxels, sizeof *mesh.indices);
-    assert_true(mesh.positions != NULL && mesh.indices != NULL);
-    const int* size = grid->frame.size;
-    for (int i = 0; i < size[0] * size[1] * size[2]; ++i) {
-        const int voxel[3] = {i % size[0], i / size[0] % size[1], i / size[0] / size[1]};
-        for (int side = 0; IsSet(grid, voxel) && side < 6; ++side) {
-            int next[3] = {voxel[0], voxel[1], voxel[2]};
-            next[side / 2] += side % 2 == 1 ? 1 : -1;
-            if (!IsSet(grid, next)) {
-                AddFace(&mesh, &grid->frame, voxel, side / 2, side % 2 == 1);
-            }
-        }
-    }
-    return mesh;
-}
-
-static void FreeMesh(pvtContext* context, pvtMesh* mesh)
-{
-    pvtRelease(context, mesh->positions);
-    pvtRelease(context, mesh->indices);
-}
-
-// Twice cellsPerVoxel times the height of a cell's centre, in 2^-20 voxel: an exact integer.
-static int64_t GetHeight(const pvtPlane* plane, int cellsPerVoxel, int i, int j)
-{
-    return plane->offset * 2 * cellsPerVoxel + (int64_t)plane->slopeU * (2 * i + 1) +
-           (int64_t)plane->slopeV * (2 * j + 1);
-}
-
 static bool LookUpCell(const pvtBitGrid* grid, const pvtPlane* plane, int cellsPerVoxel, int i,
                        int j)
 {
@@ -147,20 +89,6 @@ static bool LookUpCell(const pvtBitGrid* grid, const pvtPlane* plane, int cellsP
     at[pvtPlane_GetU(plane)] = i / cellsPerVoxel;
     at[pvtPlane_GetV(plane)] = j / cellsPerVoxel;
     return IsSet(grid, at);
-}
-
-// The one mismatch that is accepted: within 1/512 cell of the centre along u and v, the plane meets
-// a voxel's face. The allowance is for depths next to −1, which a float rounds to 2^-17 voxel at
-// this size; a plane without slopes has no clipped edges, and is exact.
-static bool IsNextToFace(const pvtPlane* plane, int cellsPerVoxel, int i, int j)
-{
-    const int64_t voxel = 2 * cellsPerVoxel * (INT64_C(1) << PVT_PLANE_BITS);
-    const int64_t height = GetHeight(plane, cellsPerVoxel, i, j);
-    const int64_t above = ((height % voxel) + voxel) % voxel;
-    const int64_t distance = above < voxel - above ? above : voxel - above;
-    const int64_t slopes = llabs((int64_t)plane->slopeU) + llabs((int64_t)plane->slopeV);
-    const int64_t allowance = slopes == 0 ? 0 : voxel >> 17;
-    return distance <= slopes * 2 / 512 + allowance;
 }
 
 // Cells counted over all checks, so that the share of mismatches can be judged too.
@@ -226,7 +154,8 @@ static void CheckSolid(pvtContext* context, pvtGl* gl, SolidFcn* solid, Tally* t
 {
     const int size[3] = {MAX_VOXELS, 31, 40};
     pvtBitGrid grid = MakeGrid(context, solid, size);
-    pvtMesh mesh = MakeVoxelMesh(context, &grid);
+    pvtMesh mesh;
+    CHECK_OK(context, pvtBuildVoxelMesh(context, &grid, &mesh));
     pvtSlicer slicer;
     CHECK_OK(context, pvtCreateStencilSlicer(context, gl, &grid.frame, &mesh, &slicer));
     pvtRandom random = pvtMakeRandom(7, 0);
@@ -235,7 +164,7 @@ static void CheckSolid(pvtContext* context, pvtGl* gl, SolidFcn* solid, Tally* t
         SliceAndCompare(context, &slicer, &grid, &plane, tally);
     }
     pvtReleaseStencilSlicer(context, &slicer);
-    FreeMesh(context, &mesh);
+    pvtMesh_Free(context, &mesh);
     pvtRelease(context, grid.words);
 }
 
@@ -299,7 +228,8 @@ static void three_slicers_agree(void** state)
     pvtContext* context = CreateTestContext(1);
     const int size[3] = {37, MAX_VOXELS, 33};
     pvtBitGrid grid = MakeGrid(context, IsInWaves, size);
-    pvtMesh mesh = MakeVoxelMesh(context, &grid);
+    pvtMesh mesh;
+    CHECK_OK(context, pvtBuildVoxelMesh(context, &grid, &mesh));
     pvtGl* gls[2];
     pvtSlicer slicers[2];
     for (int b = 0; b < 2; ++b) {
@@ -311,7 +241,7 @@ static void three_slicers_agree(void** state)
         pvtReleaseStencilSlicer(context, &slicers[b]);
         pvtCloseGl(context, gls[b]);
     }
-    FreeMesh(context, &mesh);
+    pvtMesh_Free(context, &mesh);
     pvtRelease(context, grid.words);
     DestroyTestContext(context);
 }
@@ -324,7 +254,8 @@ static void a_plane_past_the_grid_slices_nothing(void** state)
     CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
     const int size[3] = {16, 16, 16};
     pvtBitGrid grid = MakeGrid(context, IsInNoise, size);
-    pvtMesh mesh = MakeVoxelMesh(context, &grid);
+    pvtMesh mesh;
+    CHECK_OK(context, pvtBuildVoxelMesh(context, &grid, &mesh));
     pvtSlicer slicer;
     CHECK_OK(context, pvtCreateStencilSlicer(context, gl, &grid.frame, &mesh, &slicer));
     pvtBitmap slice;
@@ -341,7 +272,7 @@ static void a_plane_past_the_grid_slices_nothing(void** state)
     }
     pvtBitmap_Free(context, &slice);
     pvtReleaseStencilSlicer(context, &slicer);
-    FreeMesh(context, &mesh);
+    pvtMesh_Free(context, &mesh);
     pvtRelease(context, grid.words);
     pvtCloseGl(context, gl);
     DestroyTestContext(context);
@@ -386,12 +317,13 @@ static void ReleaseBlock(void* user, void* memory)
 static pvtStatus SliceOneVoxel(pvtContext* context, pvtGl* gl)
 {
     const pvtGridFrame frame = {{0, 0, 0}, 1.0, {3, 3, 3}};
-    pvtVec3 positions[24];
-    uint32_t indices[36];
-    pvtMesh mesh = {positions, indices, 0, 0};
-    for (int side = 0; side < 6; ++side) {
-        AddFace(&mesh, &frame, (const int[]){1, 1, 1}, side / 2, side % 2 == 1);
+    pvtVec3 positions[8];
+    for (int i = 0; i < 8; ++i) {
+        positions[i] = (pvtVec3){i & 1 ? 2 : 1, i & 2 ? 2 : 1, i & 4 ? 2 : 1};
     }
+    uint32_t indices[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                            2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    const pvtMesh mesh = {positions, indices, 8, 12};
     pvtSlicer slicer;
     pvtStatus status = pvtCreateStencilSlicer(context, gl, &frame, &mesh, &slicer);
     if (status == PVT_OK) {
