@@ -70,14 +70,19 @@ char* pvtCopyCleanText(pvtContext* context, const char* text)
     return copy;
 }
 
-const char* pvtCleanName(const char* text, char buffer[PVT_NAME_SIZE])
+const char* pvtCleanText(const char* text, char* buffer, size_t size)
 {
     static const char dots[] = "...";
-    const size_t room = PVT_NAME_SIZE - sizeof dots;
+    const size_t room = size - sizeof dots;
     if (text[CleanInto(text, buffer, room)] != '\0') {
         memcpy(buffer + strlen(buffer), dots, sizeof dots);
     }
     return buffer;
+}
+
+const char* pvtCleanName(const char* text, char buffer[PVT_NAME_SIZE])
+{
+    return pvtCleanText(text, buffer, PVT_NAME_SIZE);
 }
 
 bool pvtHasEnding(const char* path, const char* ending)
