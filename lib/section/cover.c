@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which cells a triangle touches: row by row, the least and the greatest x that the triangle has
+// Which cells a triangle or a segment touches: row by row, the least and the greatest x that it has
 // between the row's two borders, as fractions, rounded outwards to whole cells.
 #include "cover.h"
 
@@ -29,6 +29,15 @@ static void AddEdge(CellRange* range, pvtPoint2 p, pvtPoint2 q, const int64_t st
     range->end = pvtMaxInt64(range->end, pvtCeilDivide(right, divisor));
 }
 
+static bool IsRangeCovered(const pvtBitmap* cells, int64_t row, const CellRange* range)
+{
+    if (range->begin < 0 || range->end > cells->width) {
+        return false;
+    }
+    const uint64_t* words = cells->words + (size_t)row * cells->wordsPerRow;
+    return pvtIsBitRangeSet(words, (size_t)range->begin, (size_t)range->end);
+}
+
 static bool IsRowCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3],
                          int64_t row)
 {
@@ -37,11 +46,7 @@ static bool IsRowCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 c
     for (int i = 0; i < 3; ++i) {
         AddEdge(&range, corners[i], corners[i == 2 ? 0 : i + 1], strip, unit);
     }
-    if (range.begin < 0 || range.end > cells->width) {
-        return false;
-    }
-    const uint64_t* words = cells->words + (size_t)row * cells->wordsPerRow;
-    return pvtIsBitRangeSet(words, (size_t)range.begin, (size_t)range.end);
+    return IsRangeCovered(cells, row, &range);
 }
 
 bool pvtIsTriangleCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3])
@@ -57,6 +62,29 @@ bool pvtIsTriangleCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 
     }
     for (int64_t row = first; row < end; ++row) {
         if (!IsRowCovered(cells, unit, corners, row)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool pvtIsSegmentCovered(const pvtBitmap* cells, int32_t unit, pvtPoint2 from, pvtPoint2 to)
+{
+    const int64_t first = pvtFloorDivide(pvtMinInt64(from.y, to.y), unit);
+    const int64_t end = pvtCeilDivide(pvtMaxInt64(from.y, to.y), unit);
+    if (first < end && (first < 0 || end > cells->height)) {
+        return false;
+    }
+    for (int64_t row = first; row < end; ++row) {
+        const int64_t strip[2] = {row * unit, (row + 1) * unit};
+        CellRange range = {INT64_MAX, INT64_MIN};
+        if (from.y == to.y) {
+            range.begin = pvtFloorDivide(pvtMinInt64(from.x, to.x), unit);
+            range.end = pvtCeilDivide(pvtMaxInt64(from.x, to.x), unit);
+        } else {
+            AddEdge(&range, from, to, strip, unit);
+        }
+        if (!IsRangeCovered(cells, row, &range)) {
             return false;
         }
     }
