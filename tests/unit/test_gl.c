@@ -270,9 +270,11 @@ static void contexts_draw_at_once_on_threads_of_their_own(void** state)
     }
     for (int i = 0; i < THREADS; ++i) {
         pthread_join(threads[i], NULL);
-        assert_int_equal(workers[i].wrong, 0);
     }
     pthread_barrier_destroy(&bothAreOpen);
+    for (int i = 0; i < THREADS; ++i) {
+        assert_int_equal(workers[i].wrong, 0);
+    }
 }
 
 // Refuses the allocation that it is counting down to.
