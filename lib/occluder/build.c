@@ -29,6 +29,8 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
         {"chains", pvtChainStep, &build.stats.seconds.chains},
         // The cut through all chains that hides most within the budget.
         {"select", pvtSelectStep, &build.stats.seconds.select},
+        // Panels move, tilt and trade triangles for as long as they hide more.
+        {"refine", pvtRefineStep, &build.stats.seconds.refine},
         // The promise is checked by other code than that which made it.
         {"check", pvtCheckStep, &build.stats.seconds.check},
     };

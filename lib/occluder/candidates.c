@@ -20,6 +20,7 @@ void pvtCandidateSet_Free(pvtContext* context, pvtCandidateSet* set)
 {
     pvtChainSet_Free(context, &set->chains);
     pvtRelease(context, set->planes);
+    pvtRelease(context, set->triangles);
     *set = (pvtCandidateSet){0};
 }
 
@@ -134,7 +135,41 @@ static void RunCandidateTask(size_t begin, size_t end, int worker, void* taskDat
     }
 }
 
-// Appends the batch's chains, in order. Ranks, points and starts are copied as they are.
+// Makes room for so many points and chains in all.
+static pvtStatus GrowCandidates(pvtContext* context, pvtCandidateSet* set, size_t points,
+                                size_t chains)
+{
+    struct {
+        void** memory;
+        size_t count, size;
+    } parts[] = {
+        {(void**)&set->chains.points, points, sizeof *set->chains.points},
+        {(void**)&set->chains.ranks, points, sizeof *set->chains.ranks},
+        {(void**)&set->chains.limits, points, sizeof *set->chains.limits},
+        {(void**)&set->chains.starts, chains + 1, sizeof *set->chains.starts},
+        {(void**)&set->planes, chains, sizeof *set->planes},
+        {(void**)&set->triangles, chains, sizeof *set->triangles},
+    };
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
+        void* grown = pvtReallocate(context, *parts[i].memory, parts[i].count, parts[i].size);
+        if (grown == NULL) {
+            return pvtContext_GetStatus(context);
+        }
+        *parts[i].memory = grown;
+    }
+    return PVT_OK;
+}
+
+static int32_t GetLongestLink(const pvtChainSet* chains, size_t chain)
+{
+    int32_t points = 0;
+    for (size_t i = chains->starts[chain]; i < chains->starts[chain + 1]; ++i) {
+        points += chains->limits[i] == UINT32_MAX ? 1 : 0;
+    }
+    return points - 2;
+}
+
+// Appends the batch's chains, in order.
 static pvtStatus AppendChains(pvtContext* context, const CandidateTask* task, size_t count,
                               pvtCandidateSet* set)
 {
@@ -144,24 +179,10 @@ static pvtStatus AppendChains(pvtContext* context, const CandidateTask* task, si
         points += task->chains[slot].pointCount;
         chains += task->chains[slot].count;
     }
+    if (GrowCandidates(context, set, points, chains) != PVT_OK) {
+        return pvtContext_GetStatus(context);
+    }
     pvtChainSet* to = &set->chains;
-    void* grown[4] = {pvtReallocate(context, to->points, points, sizeof *to->points), NULL};
-    if (grown[0] == NULL) {
-        return pvtContext_GetStatus(context);
-    }
-    to->points = grown[0];
-    if ((grown[1] = pvtReallocate(context, to->ranks, points, sizeof *to->ranks)) == NULL) {
-        return pvtContext_GetStatus(context);
-    }
-    to->ranks = grown[1];
-    if ((grown[2] = pvtReallocate(context, to->starts, chains + 1, sizeof *to->starts)) == NULL) {
-        return pvtContext_GetStatus(context);
-    }
-    to->starts = grown[2];
-    if ((grown[3] = pvtReallocate(context, set->planes, chains, sizeof *set->planes)) == NULL) {
-        return pvtContext_GetStatus(context);
-    }
-    set->planes = grown[3];
     for (size_t slot = 0; slot < count; ++slot) {
         const pvtChainSet* from = &task->chains[slot];
         if (from->count == 0) {
@@ -169,9 +190,11 @@ static pvtStatus AppendChains(pvtContext* context, const CandidateTask* task, si
         }
         memcpy(to->points + to->pointCount, from->points, from->pointCount * sizeof *to->points);
         memcpy(to->ranks + to->pointCount, from->ranks, from->pointCount * sizeof *to->ranks);
+        memcpy(to->limits + to->pointCount, from->limits, from->pointCount * sizeof *to->limits);
         for (size_t c = 0; c < from->count; ++c) {
             to->starts[to->count + c] = to->pointCount + from->starts[c];
             set->planes[to->count + c] = task->sections->sections[task->first + slot].plane;
+            set->triangles[to->count + c] = GetLongestLink(from, c);
         }
         to->pointCount += from->pointCount;
         to->count += from->count;

@@ -300,7 +300,7 @@ static bool TakeCandidate(Maker* maker, int triangles, pvtPanel* panel)
 {
     const pvtChainSet* chains = &maker->options->candidates->chains;
     const size_t candidate = PickCandidate(maker);
-    const int most = (int)(chains->starts[candidate + 1] - chains->starts[candidate]) - 2;
+    const int most = maker->options->candidates->triangles[candidate];
     triangles = triangles < most ? triangles : most;
     if (triangles + 2 > PVT_MAX_FIT_POINTS) {
         triangles = PVT_MAX_FIT_POINTS - 2;

@@ -18,22 +18,43 @@ typedef struct Reduction {
     pvtScoredMaskSet covered;
     double* gains; // one a candidate, of the present step
     const pvtCut* cut;
+    pvtPoint2* points; // of whole polygons: candidate c has starts[c] to starts[c + 1] − 1
+    size_t* starts;
 } Reduction;
 
-static int32_t GetMaxTriangles(const pvtChainSet* chains, size_t chain)
+// The longest links of all chains, one behind the other.
+static pvtStatus CollectWhole(pvtContext* context, Reduction* reduction)
 {
-    return (int32_t)(chains->starts[chain + 1] - chains->starts[chain]) - 2;
+    const pvtCandidateSet* candidates = reduction->candidates;
+    const size_t count = candidates->chains.count;
+    reduction->starts = pvtAllocate(context, count + 1, sizeof *reduction->starts);
+    if (reduction->starts == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    for (size_t c = 0; c < count; ++c) {
+        reduction->starts[c + 1] = reduction->starts[c] + (size_t)candidates->triangles[c] + 2;
+    }
+    reduction->points = pvtAllocate(context, reduction->starts[count], sizeof *reduction->points);
+    if (reduction->points == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    for (size_t c = 0; c < count; ++c) {
+        pvtChainSet_GetLink(&candidates->chains, c, candidates->triangles[c],
+                            reduction->points + reduction->starts[c]);
+    }
+    return PVT_OK;
 }
 
+// The view's mask with the candidate's whole polygon added.
 static void DrawWhole(const Reduction* reduction, size_t candidate, size_t view, uint64_t* rows)
 {
     const pvtScorer* scorer = &reduction->scorer;
-    const pvtChainSet* chains = &reduction->candidates->chains;
+    const size_t first = reduction->starts[candidate];
     const pvtPlaneProjection projection =
         pvtProjectPlane(scorer, view, &reduction->candidates->planes[candidate]);
     memset(rows, 0, scorer->wordCount * sizeof *rows);
-    pvtDrawSectionPolygon(scorer, &projection, chains->points + chains->starts[candidate],
-                          chains->starts[candidate + 1] - chains->starts[candidate], rows);
+    pvtDrawSectionPolygon(scorer, &projection, reduction->points + first,
+                          reduction->starts[candidate + 1] - first, rows);
     const uint64_t* covered = reduction->covered.masks[view].rows;
     for (size_t word = 0; word < scorer->wordCount; ++word) {
         rows[word] |= covered[word];
@@ -73,7 +94,7 @@ static bool AddBest(Reduction* reduction, double completion, pvtCut* cut)
     if (cut->count == 0 || reduction->gains[best] <= completion * present) {
         return false;
     }
-    cut->triangles[best] = GetMaxTriangles(&reduction->candidates->chains, best);
+    cut->triangles[best] = reduction->candidates->triangles[best];
     for (size_t v = 0; v < scorer->viewCount; ++v) {
         uint64_t rows[MAX_WORDS];
         DrawWhole(reduction, best, v, rows);
@@ -167,10 +188,17 @@ pvtStatus pvtReduceOccluder(pvtContext* context, const pvtSelectOptions* options
         cut->triangles = pvtAllocate(context, count, sizeof *cut->triangles);
         cut->count = count;
         reduction.gains = pvtAllocate(context, count, sizeof *reduction.gains);
-        status = cut->triangles == NULL || reduction.gains == NULL
-                     ? pvtContext_GetStatus(context)
-                     : RunReduction(&reduction, options, cut);
+        status = cut->triangles == NULL || reduction.gains == NULL ? pvtContext_GetStatus(context)
+                                                                   : PVT_OK;
     }
+    if (status == PVT_OK) {
+        status = CollectWhole(context, &reduction);
+    }
+    if (status == PVT_OK) {
+        status = RunReduction(&reduction, options, cut);
+    }
+    pvtRelease(context, reduction.points);
+    pvtRelease(context, reduction.starts);
     pvtRelease(context, reduction.gains);
     pvtScoredMaskSet_Free(context, &reduction.covered);
     pvtScorer_Free(context, &reduction.scorer);

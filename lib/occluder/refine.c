@@ -8,7 +8,6 @@
 #include "occluder.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { BATCH = 8 };
@@ -26,7 +25,7 @@ typedef struct Refinement {
     pvtArrangement arrangement;
     pvtMoveOptions moves;
     Trial* trials; // BATCH
-    uint64_t next; // number of the batch's first trial
+    uint64_t next; // number of the batch's first trial: its dice
 } Refinement;
 
 static void RunTrials(size_t begin, size_t end, int worker, void* taskData)
@@ -63,80 +62,61 @@ static pvtStatus PlaceOccluder(pvtContext* context, pvtArrangement* arrangement,
     return PVT_OK;
 }
 
-static double GetEnv(const char* name, double value)
+// One batch: changes are judged against what is there before it, and the first that gains is made.
+// Those behind it count as not tried. So the outcome does not depend on the number of threads.
+static pvtStatus RunBatch(pvtContext* context, Refinement* refinement)
 {
-    const char* text = getenv(name);
-    return text != NULL ? atof(text) : value;
+    pvtParallelFor(context, RunTrials, BATCH, 1, refinement);
+    for (int i = 0; i < BATCH; ++i) {
+        const Trial* trial = &refinement->trials[i];
+        ++refinement->next;
+        if (trial->status != PVT_OK) {
+            return trial->status;
+        }
+        if (trial->made && trial->change.value > refinement->arrangement.value) {
+            return pvtApplyChange(context, &refinement->arrangement, &trial->change);
+        }
+    }
+    return PVT_OK;
 }
 
-static pvtStatus Anneal(pvtContext* context, Refinement* refinement, pvtPanel* best)
+static pvtStatus Climb(pvtContext* context, Refinement* refinement)
 {
-    pvtArrangement* arrangement = &refinement->arrangement;
-    const int total = refinement->options->trials;
-    double bestValue = arrangement->value;
-    const size_t capacity = (size_t)arrangement->capacity;
-    for (size_t s = 0; s < capacity; ++s) {
-        best[s] = arrangement->panels[s].panel;
-    }
-    const double threshold0 = GetEnv("PVT_T0", 1e-3);
-    const double reach0 = refinement->moves.reach;
-    long accepted = 0, improved = 0;
-    int done = 0;
-    while (done < total) {
-        const double rest = 1.0 - (double)done / total;
-        refinement->moves.reach = reach0 * (0.02 + 0.98 * rest);
-        refinement->moves.structure = GetEnv("PVT_S0", 0.4) * rest + 0.1;
-        const double threshold = threshold0 * rest * rest * bestValue;
-        pvtParallelFor(context, RunTrials, BATCH, 1, refinement);
-        for (int i = 0; i < BATCH; ++i) {
-            Trial* trial = &refinement->trials[i];
-            ++done;
-            ++refinement->next;
-            if (trial->status != PVT_OK) {
-                return trial->status;
-            }
-            if (!trial->made || trial->change.value <= arrangement->value - threshold) {
-                continue;
-            }
-            ++accepted;
-            const pvtStatus status = pvtApplyChange(context, arrangement, &trial->change);
-            if (status != PVT_OK) {
-                return status;
-            }
-            if (arrangement->value > bestValue) {
-                ++improved;
-                bestValue = arrangement->value;
-                for (size_t s = 0; s < capacity; ++s) {
-                    best[s] = arrangement->panels[s].panel;
-                }
-            }
-            break; // what follows was judged against what was there before
+    const double total = refinement->options->trials;
+    const double reach = refinement->moves.reach;
+    while ((double)refinement->next < total) {
+        // Large steps and new structure first, small steps at the end.
+        const double rest = 1.0 - (double)refinement->next / total;
+        refinement->moves.reach = reach * (0.02 + 0.98 * rest);
+        refinement->moves.structure = 0.1 + 0.4 * rest;
+        const pvtStatus status = RunBatch(context, refinement);
+        if (status != PVT_OK) {
+            return status;
         }
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
-        pvtReportProgress(context, (double)done / total);
+        pvtReportProgress(context, 1.0 - rest);
     }
-    pvtLog(context, PVT_LOG_DEBUG, "refine: %d trials, %ld accepted, %ld better, value %g", done,
-           accepted, improved, bestValue);
     return PVT_OK;
 }
 
-static pvtStatus StorePanels(pvtContext* context, const pvtPanel* panels, int capacity,
+static pvtStatus StorePanels(pvtContext* context, const pvtArrangement* arrangement,
                              pvtOccluder* occluder)
 {
     size_t polygons = 0;
     size_t points = 0;
-    for (int s = 0; s < capacity; ++s) {
-        polygons += panels[s].count > 0 ? 1 : 0;
-        points += (size_t)panels[s].count;
+    for (int s = 0; s < arrangement->capacity; ++s) {
+        const int count = arrangement->panels[s].panel.count;
+        polygons += count > 0 ? 1 : 0;
+        points += (size_t)count;
     }
     pvtOccluder refined;
     pvtStatus status = pvtAllocateOccluder(context, &occluder->frame, polygons, points, &refined);
-    for (int s = 0; s < capacity && status == PVT_OK; ++s) {
-        if (panels[s].count > 0) {
-            pvtAddOccluderPolygon(&refined, &panels[s].plane, panels[s].points,
-                                  (size_t)panels[s].count);
+    for (int s = 0; s < arrangement->capacity && status == PVT_OK; ++s) {
+        const pvtPanel* panel = &arrangement->panels[s].panel;
+        if (panel->count > 0) {
+            pvtAddOccluderPolygon(&refined, &panel->plane, panel->points, (size_t)panel->count);
         }
     }
     if (status == PVT_OK) {
@@ -151,33 +131,37 @@ static pvtStatus StorePanels(pvtContext* context, const pvtPanel* panels, int ca
     return PVT_OK;
 }
 
+// Running sums of the candidates' areas, so that large ones are drawn more often.
+static double* SumAreas(pvtContext* context, const pvtCandidateSet* candidates)
+{
+    const size_t count = candidates->chains.count;
+    double* sums = pvtAllocate(context, count, sizeof *sums);
+    double sum = 0.0;
+    for (size_t c = 0; c < count && sums != NULL; ++c) {
+        pvtPoint2 points[PVT_MAX_FIT_POINTS];
+        const size_t n =
+            pvtChainSet_GetLink(&candidates->chains, c, PVT_MAX_FIT_POINTS - 2, points);
+        sum += (double)pvtGetLoopArea2(points, n) * pvtPlane_GetAreaScale(&candidates->planes[c]);
+        sums[c] = sum;
+    }
+    return sums;
+}
+
 pvtStatus pvtRefineOccluder(pvtContext* context, const pvtRefineOptions* options,
                             const pvtSliceVolume* volume, const pvtCandidateSet* candidates,
                             pvtOccluder* occluder)
 {
     Refinement refinement = {.context = context, .options = options};
-    const pvtScorerOptions scorer = {.views = options->views,
-                                     .bounds = options->bounds,
-                                     .size = 64,
-                                     .exponent = (int)GetEnv("PVT_EXP", 1)};
-    const int capacity = options->budget;
+    const pvtScorerOptions scorer = {
+        .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1};
     pvtStatus status =
-        pvtCreateArrangement(context, &scorer, volume, capacity, &refinement.arrangement);
-    const size_t count = candidates->chains.count;
-    double* sums = pvtAllocate(context, count, sizeof *sums);
-    pvtPanel* best = pvtAllocate(context, (size_t)capacity, sizeof *best);
+        pvtCreateArrangement(context, &scorer, volume, options->budget, &refinement.arrangement);
+    double* sums = SumAreas(context, candidates);
     refinement.trials = pvtAllocate(context, BATCH, sizeof *refinement.trials);
-    if (status == PVT_OK && (sums == NULL || best == NULL || refinement.trials == NULL)) {
+    if (status == PVT_OK && (sums == NULL || refinement.trials == NULL)) {
         status = pvtContext_GetStatus(context);
     }
     if (status == PVT_OK) {
-        double sum = 0.0;
-        for (size_t c = 0; c < count; ++c) {
-            const size_t first = candidates->chains.starts[c];
-            sum += (double)pvtGetLoopArea2(candidates->chains.points + first,
-                                           candidates->chains.starts[c + 1] - first);
-            sums[c] = sum;
-        }
         const int* size = volume->grid->frame.size;
         refinement.moves = (pvtMoveOptions){.budget = options->budget,
                                             .reach = 0.15 * fmax(size[0], fmax(size[1], size[2])),
@@ -186,16 +170,15 @@ pvtStatus pvtRefineOccluder(pvtContext* context, const pvtRefineOptions* options
         status = PlaceOccluder(context, &refinement.arrangement, occluder);
     }
     if (status == PVT_OK) {
-        status = Anneal(context, &refinement, best);
+        status = Climb(context, &refinement);
     }
     if (status == PVT_OK) {
-        status = StorePanels(context, best, capacity, occluder);
+        status = StorePanels(context, &refinement.arrangement, occluder);
     }
     for (int i = 0; i < BATCH && refinement.trials != NULL; ++i) {
         pvtBitmap_Free(context, &refinement.trials[i].scratch.cells);
     }
     pvtRelease(context, refinement.trials);
-    pvtRelease(context, best);
     pvtRelease(context, sums);
     pvtArrangement_Free(context, &refinement.arrangement);
     return status;

@@ -5,13 +5,16 @@
 #include <paravent/occluder.h>
 
 typedef struct pvtRefineOptions {
-    int budget;
-    const pvtViewSet* views;
-    pvtBox3 bounds;
+    int budget;              ///< triangles
+    const pvtViewSet* views; ///< borrowed
+    pvtBox3 bounds;          ///< [wu] what the masks span
     uint64_t seed;
-    int trials;
+    int trials; ///< changes that are tried
 } pvtRefineOptions;
 
+/// Changes panels at random for as long as that raises the measure: points move as far as the
+/// allowed cells let them, planes shift and tilt, triangles go from panel to panel, panels give way
+/// to candidates. The measure never falls.
 pvtStatus pvtRefineOccluder(pvtContext* context, const pvtRefineOptions* options,
                             const pvtSliceVolume* volume, const pvtCandidateSet* candidates,
                             pvtOccluder* occluder);

@@ -17,6 +17,8 @@
 enum {
     HEAD = 16, // candidates evaluated at once: fixed, so that threads do not matter
     MAX_LEVELS = 24,
+    OPENING = 4, // a first link of a chain is a hexagon: single triangles gain more each, but leave
+                 // so many panels that none can grow later
     MAX_WORDS = PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64,
 };
 
@@ -45,17 +47,14 @@ pvtSelectOptions pvtDefaultSelectOptions(void)
     return (pvtSelectOptions){.budget = 64, .completion = 0.01};
 }
 
-static int32_t GetMaxTriangles(const pvtChainSet* chains, size_t chain)
-{
-    return (int32_t)(chains->starts[chain + 1] - chains->starts[chain]) - 2;
-}
-
-// The levels worth trying above `present`: all of the next few, then ever fewer.
+// The levels worth trying above `present`: a hexagon first, all of the next few, then ever fewer.
 static int ListLevels(int32_t present, int32_t most, int32_t levels[MAX_LEVELS])
 {
     int count = 0;
     int32_t step = 1;
-    for (int32_t level = present + 1; level <= most && count < MAX_LEVELS; level += step) {
+    const int32_t opening = most < OPENING ? most : OPENING;
+    for (int32_t level = present == 0 ? opening : present + 1; level <= most && count < MAX_LEVELS;
+         level += step) {
         levels[count++] = level;
         if (count >= 4) {
             step += step / 2 + 1;
@@ -94,7 +93,7 @@ static void EvaluateHead(size_t begin, size_t end, int worker, void* taskData)
     for (size_t i = begin; i < end; ++i) {
         const size_t candidate = selection->head[i];
         const int32_t present = selection->cut->triangles[candidate];
-        int32_t most = GetMaxTriangles(&selection->candidates->chains, candidate);
+        int32_t most = selection->candidates->triangles[candidate];
         most = most - present > selection->left ? present + selection->left : most;
         most = most > 254 ? 254 : most;
         int32_t levels[MAX_LEVELS];
@@ -179,7 +178,7 @@ static void GuessOffers(Selection* selection)
         }
         const double voxel = selection->candidates->frame.voxelSize / (1 << PVT_POINT_BITS);
         int32_t levels[MAX_LEVELS];
-        int32_t most = GetMaxTriangles(chains, c);
+        int32_t most = selection->candidates->triangles[c];
         most = most > selection->left ? selection->left : most;
         const int count = ListLevels(0, most > 254 ? 254 : most, levels);
         for (int l = 0; l < count; ++l) {

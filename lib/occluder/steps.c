@@ -4,6 +4,7 @@
 #include "base/context.h"
 #include "base/vector.h"
 #include "ceiling.h"
+#include "refine.h"
 
 #include <math.h>
 
@@ -11,6 +12,9 @@ enum {
     MIN_RESOLUTION = 8,
     MAX_RESOLUTION = 2048,
     MEASURE_SIZE = 64,
+    SELECT_VIEWS = 24,
+    REFINE_TRIALS = 20000,
+    MAX_REFINED = 512, // triangles: beyond, panels are so many that single moves hardly count
 };
 
 static const double SQRT3 = 1.7320508075688772;
@@ -301,26 +305,54 @@ pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build)
     return status;
 }
 
+// A cut is a start, chosen over fewer views than refinement and the final measure see.
+static pvtStatus Choose(pvtContext* context, pvtBuild* build, const pvtViewOptions* views,
+                        pvtCut* cut)
+{
+    pvtViewOptions few = *views;
+    few.count = few.count < SELECT_VIEWS ? few.count : SELECT_VIEWS;
+    pvtViewSet set;
+    pvtStatus status = pvtMakeViews(context, &few, &set);
+    if (status == PVT_OK) {
+        pvtSelectOptions options = pvtDefaultSelectOptions();
+        options.budget = build->options->budget;
+        options.views = IsPaper(build) ? &build->views : &set;
+        options.bounds = build->bounds;
+        status = IsPaper(build) ? pvtReduceOccluder(context, &options, &build->candidates, cut)
+                                : pvtSelectOccluder(context, &options, &build->candidates, cut);
+    }
+    pvtViewSet_Free(context, &set);
+    return status;
+}
+
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
 {
     pvtViewOptions views = build->options->views;
     views.up = (int)build->options->up;
-    pvtStatus status = pvtMakeViews(context, &views, &build->views);
-    if (status != PVT_OK) {
-        return status;
-    }
-    pvtSelectOptions options = pvtDefaultSelectOptions();
-    options.budget = build->options->budget;
-    options.views = &build->views;
-    options.bounds = build->bounds;
     pvtCut cut = {0};
-    status = IsPaper(build) ? pvtReduceOccluder(context, &options, &build->candidates, &cut)
-                            : pvtSelectOccluder(context, &options, &build->candidates, &cut);
+    pvtStatus status = pvtMakeViews(context, &views, &build->views);
+    if (status == PVT_OK) {
+        status = Choose(context, build, &views, &cut);
+    }
     if (status == PVT_OK) {
         status = pvtTakeCut(context, &build->candidates, &cut, &build->occluder);
     }
     pvtCut_Free(context, &cut);
     return status;
+}
+
+pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
+{
+    if (IsPaper(build) || build->options->budget > MAX_REFINED) {
+        return PVT_OK;
+    }
+    const pvtRefineOptions options = {.budget = build->options->budget,
+                                      .views = &build->views,
+                                      .bounds = build->bounds,
+                                      .seed = build->options->seed,
+                                      .trials = REFINE_TRIALS};
+    return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
+                             &build->occluder);
 }
 
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)

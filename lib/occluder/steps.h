@@ -32,6 +32,7 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
 void pvtBuild_Free(pvtContext* context, pvtBuild* build);
 

@@ -37,7 +37,8 @@ typedef enum pvtMethod {
 /// Chains of candidate polygons: chain c lies on planes[c] of the grid with this frame.
 typedef struct pvtCandidateSet {
     pvtChainSet chains;
-    pvtPlane* planes; ///< chains.count
+    pvtPlane* planes;   ///< chains.count
+    int32_t* triangles; ///< chains.count: of each chain's longest link
     pvtGridFrame frame;
 } pvtCandidateSet;
 
@@ -134,7 +135,7 @@ typedef struct pvtBuildStats {
     size_t candidateCount;
     double suggestedHole; ///< [wu] 0 unless the solid came out hollow and this would fill it
     struct {
-        double voxelize, solid, sections, chains, select, check, total;
+        double voxelize, solid, sections, chains, select, refine, check, total;
     } seconds;
 } pvtBuildStats;
 
