@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Growing a set of voxels by a Euclidean ball, row by row of bits.
 //
-// The ball is a stack of rows: at (dy, dz) from its centre it is 2w + 1 voxels long. An output row
-// gathers the rows around it from the longest to the shortest, and grows by one bit at each side
-// between two lengths, so that each row ends up widened by its own w. That costs as much as the
-// ball has rows; large balls go by distances instead (dilate_far.c), when there is memory for it.
+// The ball is a stack of rows: at (dy, dz) from its centre it is 2w + 1 voxels long. An output slab
+// gathers the slabs around it, moved by dy, from the longest rows of the ball to the shortest, and
+// grows by one bit at each side between two lengths, so that each row ends up widened by its own w.
+// That costs as much as the ball has rows; large balls go by distances instead (dilate_far.c), when
+// there is memory for it.
 #include "dilate.h"
 
 #include "bit_grid.h"
@@ -15,7 +16,7 @@
 #include <stdatomic.h>
 
 // Here both ways take about the same time.
-enum { SQUARED_RADIUS_BY_DISTANCE = 20 * 20 };
+enum { SQUARED_RADIUS_BY_DISTANCE = 25 * 25 };
 
 // A row of the ball: where it lies, and by how many voxels it reaches to either side.
 typedef struct BallRow {
@@ -27,12 +28,17 @@ typedef struct Ball {
     size_t count;
 } Ball;
 
+// The rows of a slab from the first to the last that hold a bit; empty when begin ≥ end.
+typedef struct RowRange {
+    int begin, end;
+} RowRange;
+
 typedef struct Dilation {
     pvtContext* context;
     const pvtBitGrid* grid;
     pvtBitGrid* dilated;
     Ball ball;
-    bool* isEmpty; // a row of the grid holds no bit
+    RowRange* used; // for each slab of the grid
     atomic_bool cancelled;
 } Dilation;
 
@@ -88,37 +94,59 @@ static void GrowRow(uint64_t* row, size_t count)
     }
 }
 
-static void DilateRow(const Dilation* dilation, int y, int z)
+static void GrowRows(const Dilation* dilation, int z, RowRange rows, int times)
+{
+    const size_t count = dilation->grid->wordsPerRow;
+    for (int y = rows.begin; y < rows.end; ++y) {
+        uint64_t* row = pvtBitGrid_GetRow(dilation->dilated, y, z);
+        for (int i = 0; i < times; ++i) {
+            GrowRow(row, count);
+        }
+    }
+}
+
+// ORs the slab that lies a ball row away into slab z; `rows` widens to what has been written.
+static void GatherRow(const Dilation* dilation, int z, BallRow ballRow, RowRange* rows)
 {
     const pvtBitGrid* grid = dilation->grid;
-    const size_t count = grid->wordsPerRow;
-    uint64_t* out = pvtBitGrid_GetRow(dilation->dilated, y, z);
+    const int fromZ = z + ballRow.z;
+    if (fromZ < 0 || fromZ >= grid->frame.size[2]) {
+        return;
+    }
+    const int height = grid->frame.size[1];
+    const RowRange used = dilation->used[fromZ];
+    const int begin = used.begin - ballRow.y > 0 ? used.begin - ballRow.y : 0;
+    const int end = used.end - ballRow.y < height ? used.end - ballRow.y : height;
+    if (begin >= end) {
+        return;
+    }
+    const uint64_t* from = pvtBitGrid_GetRow(grid, begin + ballRow.y, fromZ);
+    uint64_t* to = pvtBitGrid_GetRow(dilation->dilated, begin, z);
+    const size_t count = (size_t)(end - begin) * grid->wordsPerRow;
+    for (size_t i = 0; i < count; ++i) {
+        to[i] |= from[i];
+    }
+    rows->begin = begin < rows->begin ? begin : rows->begin;
+    rows->end = end > rows->end ? end : rows->end;
+}
+
+static void DilateSlab(const Dilation* dilation, int z)
+{
+    const pvtBitGrid* grid = dilation->grid;
+    RowRange rows = {grid->frame.size[1], 0};
     int reach = dilation->ball.rows[0].reach;
-    bool any = false;
     for (size_t i = 0; i < dilation->ball.count; ++i) {
         const BallRow ballRow = dilation->ball.rows[i];
-        for (; reach > ballRow.reach; --reach) {
-            if (any) {
-                GrowRow(out, count);
-            }
-        }
-        const int fromY = y + ballRow.y;
-        const int fromZ = z + ballRow.z;
-        if (fromY < 0 || fromZ < 0 || fromY >= grid->frame.size[1] ||
-            fromZ >= grid->frame.size[2] || dilation->isEmpty[pvtGetRowIndex(grid, fromY, fromZ)]) {
-            continue;
-        }
-        const uint64_t* from = pvtBitGrid_GetRow(grid, fromY, fromZ);
-        for (size_t word = 0; word < count; ++word) {
-            out[word] |= from[word];
-        }
-        any = true;
+        GrowRows(dilation, z, rows, reach - ballRow.reach);
+        reach = ballRow.reach;
+        GatherRow(dilation, z, ballRow, &rows);
     }
     // The shortest row of the ball may be longer than one voxel.
-    for (; reach > 0; --reach) {
-        GrowRow(out, count);
+    GrowRows(dilation, z, rows, reach);
+    for (int y = rows.begin; y < rows.end; ++y) {
+        pvtBitGrid_GetRow(dilation->dilated, y, z)[grid->wordsPerRow - 1] &=
+            pvtBitGrid_GetTailMask(grid);
     }
-    out[count - 1] &= pvtBitGrid_GetTailMask(grid);
 }
 
 static void DilateSlabs(size_t begin, size_t end, int worker, void* taskData)
@@ -126,9 +154,7 @@ static void DilateSlabs(size_t begin, size_t end, int worker, void* taskData)
     (void)worker;
     Dilation* dilation = taskData;
     for (size_t z = begin; z < end; ++z) {
-        for (int y = 0; y < dilation->grid->frame.size[1]; ++y) {
-            DilateRow(dilation, y, (int)z);
-        }
+        DilateSlab(dilation, (int)z);
         if (pvtIsCancelled(dilation->context)) {
             atomic_store(&dilation->cancelled, true);
         }
@@ -138,16 +164,23 @@ static void DilateSlabs(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
-static void FindEmptyRows(Dilation* dilation)
+static void FindUsedRows(Dilation* dilation)
 {
     const pvtBitGrid* grid = dilation->grid;
-    const size_t rows = (size_t)grid->frame.size[1] * (size_t)grid->frame.size[2];
-    for (size_t row = 0; row < rows; ++row) {
-        uint64_t any = 0;
-        for (size_t i = 0; i < grid->wordsPerRow; ++i) {
-            any |= grid->words[row * grid->wordsPerRow + i];
+    for (int z = 0; z < grid->frame.size[2]; ++z) {
+        RowRange used = {grid->frame.size[1], 0};
+        for (int y = 0; y < grid->frame.size[1]; ++y) {
+            const uint64_t* row = pvtBitGrid_GetRow(grid, y, z);
+            uint64_t any = 0;
+            for (size_t i = 0; i < grid->wordsPerRow; ++i) {
+                any |= row[i];
+            }
+            if (any != 0) {
+                used.begin = y < used.begin ? y : used.begin;
+                used.end = y + 1;
+            }
         }
-        dilation->isEmpty[row] = any == 0;
+        dilation->used[z] = used;
     }
 }
 
@@ -163,20 +196,19 @@ pvtStatus pvtDilateGrid(pvtContext* context, const pvtBitGrid* grid, uint32_t sq
     }
     *dilated = (pvtBitGrid){0};
     Dilation dilation = {.context = context, .grid = grid, .dilated = dilated};
-    const size_t rows = (size_t)grid->frame.size[1] * (size_t)grid->frame.size[2];
-    dilation.isEmpty = pvtAllocate(context, rows, sizeof *dilation.isEmpty);
-    pvtStatus status = dilation.isEmpty == NULL ? pvtContext_GetStatus(context)
-                                                : MakeBall(context, squaredRadius, &dilation.ball);
+    dilation.used = pvtAllocate(context, (size_t)grid->frame.size[2], sizeof *dilation.used);
+    pvtStatus status = dilation.used == NULL ? pvtContext_GetStatus(context)
+                                             : MakeBall(context, squaredRadius, &dilation.ball);
     if (status == PVT_OK) {
         status = pvtCreateBitGrid(context, &grid->frame, dilated);
     }
     if (status == PVT_OK) {
-        FindEmptyRows(&dilation);
+        FindUsedRows(&dilation);
         pvtParallelFor(context, DilateSlabs, (size_t)grid->frame.size[2], 1, &dilation);
         status = atomic_load(&dilation.cancelled) ? pvtFailCancelled(context) : PVT_OK;
     }
     pvtRelease(context, dilation.ball.rows);
-    pvtRelease(context, dilation.isEmpty);
+    pvtRelease(context, dilation.used);
     if (status != PVT_OK) {
         pvtBitGrid_Free(context, dilated);
     }

@@ -13,6 +13,14 @@ pvtStatus pvtFloodOutside(pvtContext* context, const pvtSolidOptions* options,
 /// Adds all below the lowest surface voxel of each column, down to the surface's lowest layer.
 void pvtFillBelowTerrain(const pvtBitGrid* surface, pvtAxis up, pvtBitGrid* inside);
 
+/// The columns along an axis that hold surface voxels, how many runs of such all columns hold, and
+/// the columns with more than `most` of them.
+typedef struct pvtColumnStats {
+    uint64_t touched, runs, tall;
+} pvtColumnStats;
+
+pvtColumnStats pvtCountColumns(const pvtBitGrid* surface, pvtAxis up, int most);
+
 /// Adds the outside voxels from which at most `most` of the 26 directions escape.
 pvtStatus pvtFillEnclosed(pvtContext* context, int most, pvtBitGrid* inside);
 

@@ -69,22 +69,16 @@ static void CountVoxels(pvtSolid* solid)
 }
 
 // Says what would help when the flood found its way in.
-static pvtStatus WarnWhenHollow(pvtContext* context, const pvtSolidOptions* options,
-                                pvtSolid* solid)
+static void WarnWhenHollow(pvtContext* context, const pvtSolid* solid)
 {
-    const pvtStatus status =
-        pvtFindRemedy(context, options, &solid->surface, solid->strictCount, &solid->remedy);
-    if (status != PVT_OK) {
-        return status;
-    }
-    const double percent = 100.0 * solid->insideFraction;
     const pvtRemedy* remedy = &solid->remedy;
+    const double percent = 100.0 * solid->insideFraction;
+    const double voxels = remedy->smallestHole / solid->surface.frame.voxelSize;
     if (remedy->smallestHole > 0.0) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, because the surface has "
-               "openings; smallest-hole %g (%.1f voxels) would close it",
-               percent, remedy->smallestHole,
-               remedy->smallestHole / solid->surface.frame.voxelSize);
+               "openings; smallest-hole %g (%.1f voxels)%s would close it",
+               percent, remedy->smallestHole, voxels, remedy->ground ? " and ground" : "");
     } else if (remedy->ground) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "
@@ -96,7 +90,6 @@ static pvtStatus WarnWhenHollow(pvtContext* context, const pvtSolidOptions* opti
                "like a landscape; terrain would fill what lies below",
                percent);
     }
-    return PVT_OK;
 }
 
 pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
@@ -117,12 +110,13 @@ pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
     }
     if (status == PVT_OK) {
         CountVoxels(solid);
-        status = WarnWhenHollow(context, options, solid);
+        status = pvtFindRemedy(context, options, surface, solid->strictCount, &solid->remedy);
     }
     if (status != PVT_OK) {
         pvtSolid_Free(context, solid);
         return status;
     }
+    WarnWhenHollow(context, solid);
     pvtReportProgress(context, 1.0);
     return PVT_OK;
 }
@@ -142,6 +136,6 @@ pvtStatus pvtSuggestSmallestHole(pvtContext* context, const pvtSolidOptions* opt
         status = pvtFindRemedy(context, options, surface, strict, &remedy);
     }
     pvtBitGrid_Free(context, &inside);
-    *smallestHole = remedy.smallestHole;
+    *smallestHole = remedy.ground ? 0.0 : remedy.smallestHole;
     return status;
 }

@@ -59,7 +59,8 @@ typedef struct pvtSolidOptions {
 /// What would fill a solid that came out hollow; all 0 when it is not, or when nothing would.
 typedef struct pvtRemedy {
     double smallestHole; ///< [wu] > 0: this smallestHole closes the openings
-    bool ground;         ///< the surface is open below
+    bool ground;         ///< the surface is open below: this option closes it, with or without
+                         ///< the hole
     bool terrain;        ///< the surface looks like a landscape
 } pvtRemedy;
 
@@ -72,7 +73,7 @@ typedef struct pvtSolid {
     uint64_t surfaceCount; ///< [vx]
     uint64_t strictCount;  ///< [vx] inside and not touched
     double insideFraction; ///< strictCount over the voxels of the surface's bounds
-    pvtRemedy remedy;      ///< at most one of its fields is set
+    pvtRemedy remedy;      ///< what would fill a hollow solid
 } pvtSolid;
 
 PVT_API pvtSolidOptions pvtDefaultSolidOptions(void);

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "voxel_shapes.h"
+
+#include <math.h>
+
+// A shell of about one and a half voxels around a ball, with round holes at both ends of z.
+static void MakeShell(pvtContext* context, int radius, double hole, pvtBitGrid* surface)
+{
+    const int side = 2 * radius + 7;
+    MakeEmptyGrid(context, side, side, side, surface);
+    for (int i = 0; i < side * side * side; ++i) {
+        const int v[3] = {i % side, i / side % side, i / (side * side)};
+        const double x = v[0] - radius - 3;
+        const double y = v[1] - radius - 3;
+        const double z = v[2] - radius - 3;
+        const bool isHole = x * x + y * y < 0.25 * hole * hole;
+        if (fabs(sqrt(x * x + y * y + z * z) - radius) < 0.75 && !isHole) {
+            SetVoxel(surface, v[0], v[1], v[2]);
+        }
+    }
+}
+
+static pvtRemedy FindRemedy(pvtContext* context, const pvtBitGrid* surface, pvtSolidOptions options)
+{
+    pvtSolid solid;
+    CHECK_OK(context, pvtFillSolid(context, &options, surface, &solid));
+    const pvtRemedy remedy = solid.remedy;
+    double hole;
+    CHECK_OK(context, pvtSuggestSmallestHole(context, &options, surface, &hole));
+    assert_true(hole == (remedy.ground ? 0.0 : remedy.smallestHole));
+    pvtSolid_Free(context, &solid);
+    return remedy;
+}
+
+static double GetFraction(pvtContext* context, const pvtBitGrid* surface, pvtSolidOptions options)
+{
+    pvtSolid solid;
+    CHECK_OK(context, pvtFillSolid(context, &options, surface, &solid));
+    const double fraction = solid.insideFraction;
+    pvtSolid_Free(context, &solid);
+    return fraction;
+}
+
+// At 24 voxels the search sees the grid itself, at 50 a coarser copy first.
+static void the_size_told_for_a_shell_with_holes_fills_it(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    static const int radii[] = {24, 24, 24, 50};
+    static const double holes[] = {3.0, 6.0, 9.0, 14.0};
+    for (int i = 0; i < 4; ++i) {
+        pvtBitGrid surface;
+        MakeShell(context, radii[i], holes[i], &surface);
+        surface.frame.voxelSize = 0.01;
+        pvtSolidOptions options = pvtDefaultSolidOptions();
+        assert_true(GetFraction(context, &surface, options) == 0.0);
+        const pvtRemedy remedy = FindRemedy(context, &surface, options);
+        assert_true(remedy.smallestHole >= 0.01 * holes[i]);
+        assert_true(remedy.smallestHole <= 0.01 * (1.2 * holes[i] + 6.0));
+        assert_false(remedy.ground || remedy.terrain);
+        options.smallestHole = remedy.smallestHole;
+        // The ball within the shell is more than 40 % of the bounds.
+        assert_true(GetFraction(context, &surface, options) > 0.4);
+        assert_true(FindRemedy(context, &surface, options).smallestHole == 0.0);
+        pvtBitGrid_Free(context, &surface);
+    }
+    DestroyTestContext(context);
+}
+
+static void a_closed_shell_needs_no_remedy(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtBitGrid surface;
+    MakeShell(context, 20, 0.0, &surface);
+    const pvtRemedy remedy = FindRemedy(context, &surface, pvtDefaultSolidOptions());
+    assert_true(remedy.smallestHole == 0.0 && !remedy.ground && !remedy.terrain);
+    pvtBitGrid_Free(context, &surface);
+    DestroyTestContext(context);
+}
+
+// Rods in all directions through a ball: little inside, and no room between them.
+static void MakeTangle(pvtContext* context, int rods, pvtBitGrid* surface)
+{
+    enum { SIDE = 64 };
+    pvtRandom random = pvtMakeRandom(10, (uint64_t)rods);
+    MakeEmptyGrid(context, SIDE, SIDE, SIDE, surface);
+    for (int i = 0; i < rods; ++i) {
+        double from[3];
+        double to[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            from[axis] = 2.0 + (SIDE - 4) * pvtRandom_Unit(&random);
+            to[axis] = 2.0 + (SIDE - 4) * pvtRandom_Unit(&random);
+        }
+        for (int step = 0; step <= 4 * SIDE; ++step) {
+            const double t = step / (4.0 * SIDE);
+            SetVoxel(surface, (int)(from[0] + t * (to[0] - from[0])),
+                     (int)(from[1] + t * (to[1] - from[1])),
+                     (int)(from[2] + t * (to[2] - from[2])));
+        }
+    }
+}
+
+static void a_tangle_of_rods_is_not_called_hollow(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    for (int rods = 10; rods <= 640; rods *= 4) {
+        pvtBitGrid surface;
+        MakeTangle(context, rods, &surface);
+        const pvtRemedy remedy = FindRemedy(context, &surface, pvtDefaultSolidOptions());
+        assert_true(remedy.smallestHole == 0.0 && !remedy.ground && !remedy.terrain);
+        pvtBitGrid_Free(context, &surface);
+    }
+    DestroyTestContext(context);
+}
+
+// Walls and a roof around 20 × 20 × 10 voxels that face away from `up`, a window of `hole` voxels.
+static void MakeHall(pvtContext* context, pvtAxis up, int hole, pvtBitGrid* surface)
+{
+    MakeEmptyGrid(context, 28, 28, 28, surface);
+    for (int i = 0; i < 28 * 28 * 28; ++i) {
+        const int v[3] = {i % 28, i / 28 % 28, i / 784};
+        const int height = v[up] - 3;
+        const int a = v[(up + 1) % 3] - 3;
+        const int b = v[(up + 2) % 3] - 3;
+        const bool isWithin = a >= 0 && b >= 0 && a <= 21 && b <= 21 && height >= 0 && height <= 10;
+        const bool isWall = a == 0 || b == 0 || a == 21 || b == 21;
+        const bool isWindow = a == 0 && b >= 5 && b < 5 + hole && height >= 3 && height < 3 + hole;
+        if (isWithin && (isWall || height == 10) && !isWindow) {
+            SetVoxel(surface, v[0], v[1], v[2]);
+        }
+    }
+}
+
+static void the_ground_is_told_for_a_hall_without_a_floor(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    for (int up = 0; up < 3; ++up) {
+        pvtSolidOptions options = pvtDefaultSolidOptions();
+        options.up = (pvtAxis)up;
+        pvtBitGrid surface;
+        MakeHall(context, options.up, 0, &surface);
+        pvtRemedy remedy = FindRemedy(context, &surface, options);
+        assert_true(remedy.ground && remedy.smallestHole == 0.0 && !remedy.terrain);
+        pvtBitGrid_Free(context, &surface);
+
+        // With a window it takes both.
+        MakeHall(context, options.up, 3, &surface);
+        remedy = FindRemedy(context, &surface, options);
+        assert_true(remedy.ground && remedy.smallestHole >= 3.0 && remedy.smallestHole <= 6.0);
+        options.ground = true;
+        assert_true(GetFraction(context, &surface, options) == 0.0);
+        options.smallestHole = remedy.smallestHole;
+        assert_true(GetFraction(context, &surface, options) > 0.6);
+        pvtBitGrid_Free(context, &surface);
+    }
+    DestroyTestContext(context);
+}
+
+static void terrain_is_told_for_a_height_field(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    for (int up = 0; up < 3; ++up) {
+        pvtSolidOptions options = pvtDefaultSolidOptions();
+        options.up = (pvtAxis)up;
+        pvtBitGrid surface;
+        MakeEmptyGrid(context, 46, 46, 46, &surface);
+        for (int i = 0; i < 40 * 40; ++i) {
+            int v[3];
+            v[(up + 1) % 3] = 3 + i % 40;
+            v[(up + 2) % 3] = 3 + i / 40;
+            v[up] = (int)(12.0 + 5.0 * sin(0.2 * (i % 40)) + 3.0 * cos(0.3 * (i / 40.0)));
+            SetVoxel(&surface, v[0], v[1], v[2]);
+        }
+        const pvtRemedy remedy = FindRemedy(context, &surface, options);
+        assert_true(remedy.terrain && !remedy.ground && remedy.smallestHole == 0.0);
+        options.terrain = true;
+        assert_true(GetFraction(context, &surface, options) > 0.2);
+        assert_false(FindRemedy(context, &surface, options).terrain);
+        pvtBitGrid_Free(context, &surface);
+    }
+    DestroyTestContext(context);
+}
+
+static void KeepWarning(pvtLogLevel level, const char* text, void* user)
+{
+    if (level == PVT_LOG_WARNING) {
+        (void)snprintf(user, 256, "%s", text);
+    }
+}
+
+static void a_hollow_solid_is_warned_about_with_the_size_that_helps(void** state)
+{
+    (void)state;
+    char warning[256] = "";
+    pvtContextDef def = pvtDefaultContextDef();
+    def.threadCount = 1;
+    def.log = KeepWarning;
+    def.user = warning;
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtBitGrid surface;
+    MakeShell(context, 20, 0.0, &surface);
+    assert_true(GetFraction(context, &surface, pvtDefaultSolidOptions()) > 0.4);
+    assert_string_equal(warning, "");
+    pvtBitGrid_Free(context, &surface);
+    MakeShell(context, 20, 5.0, &surface);
+    const pvtRemedy remedy = FindRemedy(context, &surface, pvtDefaultSolidOptions());
+    char expected[64];
+    (void)snprintf(expected, sizeof expected, "smallest-hole %g ", remedy.smallestHole);
+    assert_non_null(strstr(warning, "hollow"));
+    assert_non_null(strstr(warning, expected));
+    pvtBitGrid_Free(context, &surface);
+    DestroyTestContext(context);
+}
+
+static pvtStatus FillAndFree(pvtContext* context, void* data)
+{
+    const pvtSolidOptions options = pvtDefaultSolidOptions();
+    pvtSolid solid;
+    const pvtStatus status = pvtFillSolid(context, &options, data, &solid);
+    assert_true(status == PVT_OK || (solid.inside.words == NULL && solid.surface.words == NULL));
+    pvtSolid_Free(context, &solid);
+    return status;
+}
+
+static void the_search_survives_failing_allocations_and_cancelling(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtBitGrid surface;
+    MakeHall(context, PVT_AXIS_Y, 3, &surface);
+    CheckEveryAllocation(FillAndFree, &surface);
+    CheckEveryCancel(FillAndFree, &surface);
+    pvtBitGrid_Free(context, &surface);
+    DestroyTestContext(context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_size_told_for_a_shell_with_holes_fills_it),
+        cmocka_unit_test(a_closed_shell_needs_no_remedy),
+        cmocka_unit_test(a_tangle_of_rods_is_not_called_hollow),
+        cmocka_unit_test(the_ground_is_told_for_a_hall_without_a_floor),
+        cmocka_unit_test(terrain_is_told_for_a_height_field),
+        cmocka_unit_test(a_hollow_solid_is_warned_about_with_the_size_that_helps),
+        cmocka_unit_test(the_search_survives_failing_allocations_and_cancelling),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
