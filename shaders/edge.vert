@@ -6,14 +6,15 @@ layout(location = 2) in vec4 color; // alpha: the width, as a fraction of the wi
 
 uniform mat4 view;
 uniform mat4 projection;
-uniform vec2 pixel; // in clip space
+uniform vec2 pixel;  // in clip space
 uniform float width; // of the widest, in pixels
 
 out vec3 paint;
 
 void main()
 {
-    vec4 ends[2] = vec4[2](projection * view * vec4(begin, 1.0), projection * view * vec4(end, 1.0));
+    mat4 seen = projection * view;
+    vec4 ends[2] = vec4[2](seen * vec4(begin, 1.0), seen * vec4(end, 1.0));
     vec2 along = ends[1].xy / ends[1].w / pixel - ends[0].xy / ends[0].w / pixel;
     float size = length(along);
     along = size > 0.0 ? along / size : vec2(1.0, 0.0);

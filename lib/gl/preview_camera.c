@@ -31,6 +31,12 @@ static const ViewDef viewDefs[PVT_PREVIEW_VIEWS] = {
     {{-0.80, -0.55, 1.0}, {0, 1, 0}, true}, // front, left, below
 };
 
+// Unlike fmax a single instruction: this runs for every corner of every triangle.
+static double Max(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 // A point in the axes of a view.
 static pvtVec3 GetPoint(const pvtPreviewCloud* cloud, size_t i, const pvtVec3 axes[3])
 {
@@ -63,7 +69,7 @@ static Extent MeasureExtent(const pvtVec3 axes[3], double field, const pvtPrevie
             const double values[6] = {wider + at.x, wider - at.x, wider + at.y,
                                       wider - at.y, at.z,         -at.z};
             for (int v = 0; v < 6; ++v) {
-                extent.most[v] = fmax(extent.most[v], values[v]);
+                extent.most[v] = Max(extent.most[v], values[v]);
             }
         }
     }
@@ -84,10 +90,10 @@ static void CenterEye(double eye[3], const pvtVec3 axes[3], const pvtPreviewClou
             const pvtVec3 at = GetPoint(&clouds[c], i, axes);
             const double x = (at.x - eye[0]) / (eye[2] - at.z);
             const double y = (at.y - eye[1]) / (eye[2] - at.z);
-            most[0] = fmax(most[0], x);
-            most[1] = fmax(most[1], -x);
-            most[2] = fmax(most[2], y);
-            most[3] = fmax(most[3], -y);
+            most[0] = Max(most[0], x);
+            most[1] = Max(most[1], -x);
+            most[2] = Max(most[2], y);
+            most[3] = Max(most[3], -y);
         }
     }
     eye[0] += 0.5 * (most[0] - most[1]) * eye[2];

@@ -36,9 +36,9 @@ PVT_API pvtGlBackend pvtGl_GetBackend(const pvtGl* gl);
 /// Slices `voxelMesh` (of a grid with this frame, wound outwards) by the near plane: the stencil
 /// counts back faces up and front faces down beyond the plane. Equal to pvtSliceGrid with
 /// PVT_SLICE_CENTER but where the plane meets a voxel's face within 1/512 cell of the cell's
-/// centre, along u and along v: graphics cards and llvmpipe place vertices on a grid of 1/256 pixel.
-/// PVT_INVALID_ARGUMENT when a position is not a voxel's corner. Slices of more cells a side than
-/// the context has pixels are PVT_LIMIT. Release the slicer before its context.
+/// centre, along u and along v: graphics cards and llvmpipe place vertices on a grid of 1/256
+/// pixel. PVT_INVALID_ARGUMENT when a position is not a voxel's corner. Slices of more cells a side
+/// than the context has pixels are PVT_LIMIT. Release the slicer before its context.
 PVT_API pvtStatus pvtCreateStencilSlicer(pvtContext* context, pvtGl* gl, const pvtGridFrame* frame,
                                          const pvtMesh* voxelMesh, pvtSlicer* slicer);
 PVT_API void pvtReleaseStencilSlicer(pvtContext* context, pvtSlicer* slicer);
