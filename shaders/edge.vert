@@ -25,7 +25,7 @@ void main()
     corner.xy += (across + beyond) * width * color.a * pixel * corner.w;
     // Nearer by a hair, so that an edge wins over the polygons that it bounds, and a wide one over
     // the thin ones that end there.
-    corner.z -= 0.0008 * color.a * corner.w;
+    corner.z -= (0.0012 + 0.0008 * color.a) * corner.w;
     gl_Position = corner;
     paint = color.rgb;
 }
