@@ -13,4 +13,6 @@ typedef struct pvtCommand {
     pvtCommandFcn* run;
 } pvtCommand;
 
+extern const pvtCommand pvtEvaluateCommand;
+
 #endif

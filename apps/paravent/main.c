@@ -7,10 +7,10 @@
 #include <string.h>
 
 static const pvtCommand* const commands[] = {
-    NULL,
+    &pvtEvaluateCommand,
 };
 
-enum { COMMAND_COUNT = sizeof commands / sizeof *commands - 1 };
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 static void PrintOverview(FILE* file)
 {

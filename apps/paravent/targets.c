@@ -10,7 +10,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-bool pvtHasEnding(const char* path, const char* ending)
+bool pvtPathEndsIn(const char* path, const char* ending)
 {
     const size_t length = strlen(path);
     const size_t endingLength = strlen(ending);

@@ -17,7 +17,7 @@ typedef struct pvtTarget {
 pvtStatus pvtCheckTargets(pvtRun* run, const pvtTarget* targets, size_t count);
 
 /// Whether the path ends like ".png", in any case of letters.
-bool pvtHasEnding(const char* path, const char* ending);
+bool pvtPathEndsIn(const char* path, const char* ending);
 
 /// The file's name without folders and its last ending, as UTF-8: "meshes/old.bunny.glb" gives
 /// "old.bunny". Bytes that are not UTF-8 become '_'. `name` is never empty.

@@ -85,7 +85,7 @@ static void MixPixel(const SilhouetteScratch* scratch, int x, int y, uint8_t pix
     for (int j = 0; j < FINE; ++j) {
         const size_t row = (size_t)(bottom + j) * scratch->original.wordsPerRow;
         for (int i = 0; i < FINE; ++i) {
-            const size_t bit = (size_t)(x * FINE + i);
+            const size_t bit = (size_t)x * FINE + (size_t)i;
             const int original = pvtGetBit(scratch->original.words + row, bit);
             const int occluder = pvtGetBit(scratch->occluder.words + row, bit);
             ++counts[2 * occluder + original];
