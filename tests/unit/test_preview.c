@@ -356,19 +356,19 @@ static void ReleaseBlock(void* user, void* memory)
 static void a_refused_allocation_leaks_nothing(void** state)
 {
     (void)state;
+    int left = -1;
+    pvtContextDef def = pvtDefaultContextDef();
+    def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &left};
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtGl* gl = NULL;
+    CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+    const size_t held = pvtContext_GetHeldBytes(context);
     Box box;
     MakeBox((pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &box);
+    const pvtPreviewOptions options = {.tileSize = 64, .up = PVT_AXIS_Y};
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int refused = 0; status != PVT_OK; ++refused) {
-        int left = -1;
-        pvtContextDef def = pvtDefaultContextDef();
-        def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &left};
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-        pvtGl* gl = NULL;
-        CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
-        pvtPreviewOptions options = pvtDefaultPreviewOptions();
-        options.tileSize = 64;
         pvtImage image;
         left = refused;
         status = pvtRenderPreview(context, gl, &options, &box.mesh, &box.mesh, &image);
@@ -377,9 +377,10 @@ static void a_refused_allocation_leaks_nothing(void** state)
         assert_true(refused < 20 && (refused > 0 || status == PVT_OUT_OF_MEMORY));
         assert_true((image.pixels != NULL) == (status == PVT_OK));
         pvtImage_Free(context, &image);
-        pvtCloseGl(context, gl);
-        DestroyTestContext(context);
+        assert_int_equal(pvtContext_GetHeldBytes(context), held);
     }
+    pvtCloseGl(context, gl);
+    DestroyTestContext(context);
 }
 
 static bool CancelLater(void* user)
@@ -391,25 +392,26 @@ static bool CancelLater(void* user)
 static void a_cancelled_preview_leaves_no_image(void** state)
 {
     (void)state;
+    int left = 0;
+    pvtContextDef def = pvtDefaultContextDef();
+    def.isCancelled = CancelLater;
+    def.user = &left;
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtGl* gl = NULL;
+    CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+    Box box;
+    MakeBox((pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &box);
+    const pvtPreviewOptions options = {.tileSize = 64, .up = PVT_AXIS_Y};
     for (int later = 0; later < 5; ++later) {
-        int left = later;
-        pvtContextDef def = pvtDefaultContextDef();
-        def.isCancelled = CancelLater;
-        def.user = &left;
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-        pvtGl* gl = NULL;
-        CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
-        Box box;
-        MakeBox((pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &box);
-        const pvtPreviewOptions options = {.tileSize = 64, .up = PVT_AXIS_Y};
+        left = later;
         pvtImage image;
         assert_int_equal(pvtRenderPreview(context, gl, &options, &box.mesh, &box.mesh, &image),
                          PVT_CANCELLED);
         assert_null(image.pixels);
-        pvtCloseGl(context, gl);
-        DestroyTestContext(context);
     }
+    pvtCloseGl(context, gl);
+    DestroyTestContext(context);
 }
 
 int main(void)

@@ -340,23 +340,25 @@ static pvtStatus SliceOneVoxel(pvtContext* context, pvtGl* gl)
 static void a_refused_allocation_leaks_nothing(void** state)
 {
     (void)state;
+    int left = -1;
+    pvtContextDef def = pvtDefaultContextDef();
+    def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &left};
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtGl* gl = NULL;
+    CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
+    const size_t held = pvtContext_GetHeldBytes(context);
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int refused = 0; status != PVT_OK; ++refused) {
-        int left = -1;
-        pvtContextDef def = pvtDefaultContextDef();
-        def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &left};
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-        pvtGl* gl = NULL;
-        CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
         left = refused;
         status = SliceOneVoxel(context, gl);
+        left = -1;
         assert_true(status == PVT_OK || status == PVT_OUT_OF_MEMORY);
         assert_true(refused < 20 && (refused > 0 || status == PVT_OUT_OF_MEMORY));
-        left = -1;
-        pvtCloseGl(context, gl);
-        DestroyTestContext(context);
+        assert_int_equal(pvtContext_GetHeldBytes(context), held);
     }
+    pvtCloseGl(context, gl);
+    DestroyTestContext(context);
 }
 
 static bool AlwaysCancel(void* user)
