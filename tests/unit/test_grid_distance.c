@@ -5,19 +5,38 @@
 
 #include <stdlib.h>
 
-static uint32_t FindSquaredDistance(const pvtBitGrid* grid, const int voxel[3])
+enum { MOST_MARKS = 64 };
+
+// The set voxels of a grid that holds few.
+typedef struct Marks {
+    int voxels[MOST_MARKS][3];
+    int count;
+} Marks;
+
+static Marks FindMarks(const pvtBitGrid* grid)
 {
-    uint32_t nearest = UINT32_MAX;
+    Marks marks = {.count = 0};
     for (int z = 0; z < grid->frame.size[2]; ++z) {
         for (int y = 0; y < grid->frame.size[1]; ++y) {
             for (int x = 0; x < grid->frame.size[0]; ++x) {
-                const int d[3] = {x - voxel[0], y - voxel[1], z - voxel[2]};
-                const uint32_t square = (uint32_t)(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                if (square < nearest && pvtBitGrid_Get(grid, x, y, z)) {
-                    nearest = square;
+                if (pvtBitGrid_Get(grid, x, y, z)) {
+                    assert_true(marks.count < MOST_MARKS);
+                    memcpy(marks.voxels[marks.count++], (int[3]){x, y, z}, 3 * sizeof(int));
                 }
             }
         }
+    }
+    return marks;
+}
+
+static uint32_t FindSquaredDistance(const Marks* marks, const int voxel[3])
+{
+    uint32_t nearest = UINT32_MAX;
+    for (int i = 0; i < marks->count; ++i) {
+        const int* mark = marks->voxels[i];
+        const int d[3] = {mark[0] - voxel[0], mark[1] - voxel[1], mark[2] - voxel[2]};
+        const uint32_t square = (uint32_t)(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        nearest = square < nearest ? square : nearest;
     }
     return nearest;
 }
@@ -34,11 +53,12 @@ static uint32_t* TransformAll(pvtContext* context, const pvtBitGrid* grid, uint3
 static void CheckDistances(pvtContext* context, const pvtBitGrid* grid, uint32_t limit)
 {
     uint32_t* distances = TransformAll(context, grid, limit);
+    const Marks marks = FindMarks(grid);
     size_t i = 0;
     for (int z = 0; z < grid->frame.size[2]; ++z) {
         for (int y = 0; y < grid->frame.size[1]; ++y) {
             for (int x = 0; x < grid->frame.size[0]; ++x, ++i) {
-                const uint32_t square = FindSquaredDistance(grid, (int[3]){x, y, z});
+                const uint32_t square = FindSquaredDistance(&marks, (int[3]){x, y, z});
                 const uint32_t expected = square <= limit ? square : limit + 1;
                 assert_int_equal(distances[i], expected);
             }
@@ -85,10 +105,11 @@ static void an_empty_grid_is_beyond_every_limit(void** state)
 
 static void CheckDilation(const pvtBitGrid* grid, const pvtBitGrid* dilated, uint32_t squaredRadius)
 {
+    const Marks marks = FindMarks(grid);
     for (int z = 0; z < grid->frame.size[2]; ++z) {
         for (int y = 0; y < grid->frame.size[1]; ++y) {
             for (int x = 0; x < grid->frame.size[0]; ++x) {
-                const bool isNear = FindSquaredDistance(grid, (int[3]){x, y, z}) <= squaredRadius;
+                const bool isNear = FindSquaredDistance(&marks, (int[3]){x, y, z}) <= squaredRadius;
                 assert_int_equal(pvtBitGrid_Get(dilated, x, y, z), isNear);
             }
         }

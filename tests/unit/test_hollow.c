@@ -41,13 +41,13 @@ static double GetFraction(pvtContext* context, const pvtBitGrid* surface, pvtSol
     return fraction;
 }
 
-// At 24 voxels the search sees the grid itself, at 50 a coarser copy first.
+// At 20 voxels the search sees the grid itself, at 42 a coarser copy first.
 static void the_size_told_for_a_shell_with_holes_fills_it(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
-    static const int radii[] = {24, 24, 24, 50};
-    static const double holes[] = {3.0, 6.0, 9.0, 14.0};
+    static const int radii[] = {20, 20, 20, 42};
+    static const double holes[] = {3.0, 5.0, 7.0, 12.0};
     for (int i = 0; i < 4; ++i) {
         pvtBitGrid surface;
         MakeShell(context, radii[i], holes[i], &surface);

@@ -90,23 +90,26 @@ static void CheckVoxelMesh(pvtContext* context, const pvtBitGrid* grid)
     pvtMesh_Free(context, &mesh);
 }
 
+// All patterns side by side in one grid, with free voxels between them.
 static void every_block_of_2_by_2_by_3_voxels_becomes_a_manifold(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid;
     for (int turn = 0; turn < 3; ++turn) {
         const int size[3] = {turn == 0 ? 3 : 2, turn == 1 ? 3 : 2, turn == 2 ? 3 : 2};
-        for (int pattern = 0; pattern < 4096; pattern += turn == 0 ? 1 : 7) {
-            MakeEmptyGrid(context, size[0], size[1], size[2], &grid);
-            for (int i = 0; i < 12; ++i) {
-                if ((pattern >> i & 1) != 0) {
-                    SetVoxel(&grid, i % size[0], i / size[0] % size[1], i / (size[0] * size[1]));
-                }
+        pvtBitGrid grid;
+        MakeEmptyGrid(context, 16 * 4, 16 * 4, 16 * 4, &grid);
+        for (int i = 0; i < 4096 * 12; ++i) {
+            const int pattern = i / 12;
+            const int voxel = i % 12;
+            if ((pattern >> voxel & 1) != 0) {
+                SetVoxel(&grid, pattern % 16 * 4 + voxel % size[0],
+                         pattern / 16 % 16 * 4 + voxel / size[0] % size[1],
+                         pattern / 256 * 4 + voxel / (size[0] * size[1]));
             }
-            CheckVoxelMesh(context, &grid);
-            pvtBitGrid_Free(context, &grid);
         }
+        CheckVoxelMesh(context, &grid);
+        pvtBitGrid_Free(context, &grid);
     }
     DestroyTestContext(context);
 }
