@@ -35,13 +35,15 @@ static pvtStatus CheckFiles(pvtRun* run, const pvtEvaluateLine* line, const Sess
     targets[count++] = (pvtTarget){"--plot", line->plot, true};
     targets[count++] = (pvtTarget){"--silhouettes", line->silhouettes, false};
     targets[count++] = (pvtTarget){"--report", line->report, false};
-    if (line->silhouettes != NULL && !pvtPathEndsIn(line->silhouettes, ".png")) {
+    const pvtStatus status = pvtCheckTargets(run, targets, count);
+    if (status == PVT_OK && line->silhouettes != NULL &&
+        !pvtPathEndsIn(line->silhouettes, ".png")) {
         return pvtRun_Fail(run, PVT_UNSUPPORTED,
                            "--silhouettes %s: pictures are written as .png; give the name that "
                            "ending",
                            line->silhouettes);
     }
-    return pvtCheckTargets(run, targets, count);
+    return status;
 }
 
 static const char* GetFileName(const char* path)
@@ -102,6 +104,9 @@ static pvtStatus Judge(pvtRun* run, const pvtEvaluateLine* line, Session* sessio
     pvtStatus status =
         pvtEvaluateOccluders(run->context, &options, &session->meshes[0], session->meshes + 1,
                              (size_t)session->fileCount - 1, &session->evaluation);
+    if (status == PVT_LIMIT) {
+        pvtRun_AddToMessage(run, "; fewer --pixels or --threads need less");
+    }
     if (status == PVT_OK && line->silhouettes != NULL) {
         status = pvtMakeContactSheet(run->context, &session->judgement, session->meshes,
                                      &session->sheet);
