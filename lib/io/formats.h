@@ -12,16 +12,17 @@
 extern "C" {
 #endif
 
-/// A file that was read, and what is wanted of it.
+/// A file that is open, and what is wanted of it.
 typedef struct pvtLoadJob {
     pvtContext* context;
     const pvtLoadOptions* options;
     const char* path;
-    const pvtSource* source;
+    int file;    ///< a regular file
+    size_t size; ///< [bytes] at least 1
 } pvtLoadJob;
 
 /// glTF 2.0, as GLB or as JSON.
-pvtStatus pvtLoadGltf(const pvtLoadJob* job, pvtModel* model);
+pvtStatus pvtLoadGltf(const pvtLoadJob* job, const pvtSource* source, pvtModel* model);
 /// OBJ, PLY, STL, FBX and DAE, by the path's ending.
 pvtStatus pvtImportModel(const pvtLoadJob* job, pvtModel* model);
 

@@ -22,9 +22,9 @@ std::uint32_t ReadU32(const std::uint8_t* bytes)
 }
 
 // The part of the file that its header claims.
-Span CheckHeader(const pvtLoadJob& job)
+Span CheckHeader(const pvtLoadJob& job, const pvtSource& source)
 {
-    const Span file{job.source->bytes, job.source->size};
+    const Span file{source.bytes, source.size};
     if (file.size < kHeaderSize + kChunkHeaderSize) {
         Refuse(job, "the GLB ends after %zu bytes, within its header; it was cut short", file.size);
     }
@@ -44,9 +44,9 @@ Span CheckHeader(const pvtLoadJob& job)
     return {file.bytes, length};
 }
 
-GltfContainer OpenGlb(const pvtLoadJob& job)
+GltfContainer OpenGlb(const pvtLoadJob& job, const pvtSource& source)
 {
-    const Span file = CheckHeader(job);
+    const Span file = CheckHeader(job, source);
     GltfContainer container;
     std::size_t at = kHeaderSize;
     for (int chunk = 0; at + kChunkHeaderSize <= file.size; ++chunk) {
@@ -99,13 +99,13 @@ void CheckNesting(const pvtLoadJob& job, const Span& json)
 
 } // namespace
 
-GltfContainer OpenGltfContainer(const pvtLoadJob& job)
+GltfContainer OpenGltfContainer(const pvtLoadJob& job, const pvtSource& source)
 {
     GltfContainer container;
-    if (job.source->size >= 4 && std::memcmp(job.source->bytes, "glTF", 4) == 0) {
-        container = OpenGlb(job);
+    if (source.size >= 4 && std::memcmp(source.bytes, "glTF", 4) == 0) {
+        container = OpenGlb(job, source);
     } else {
-        container.json = {job.source->bytes, job.source->size};
+        container.json = {source.bytes, source.size};
     }
     CheckNesting(job, container.json);
     return container;

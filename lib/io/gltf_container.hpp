@@ -20,7 +20,7 @@ struct GltfContainer {
 };
 
 /// Checks the header and every chunk's length of a GLB, and how deep the JSON nests.
-GltfContainer OpenGltfContainer(const pvtLoadJob& job);
+GltfContainer OpenGltfContainer(const pvtLoadJob& job, const pvtSource& source);
 
 } // namespace pvt
 

@@ -78,9 +78,9 @@ void PlaceInstances(const std::vector<GltfInstance>& instances,
     }
 }
 
-void LoadGltf(const pvtLoadJob& job, pvtModel* model)
+void LoadGltf(const pvtLoadJob& job, const pvtSource& source, pvtModel* model)
 {
-    const GltfContainer container = OpenGltfContainer(job);
+    const GltfContainer container = OpenGltfContainer(job, source);
     Json document = ParseJson(job, container.json);
     CheckGltfSchema(job, document);
     GltfData data(job, document, container);
@@ -111,7 +111,7 @@ void LoadGltf(const pvtLoadJob& job, pvtModel* model)
 
 } // namespace pvt
 
-pvtStatus pvtLoadGltf(const pvtLoadJob* job, pvtModel* model)
+pvtStatus pvtLoadGltf(const pvtLoadJob* job, const pvtSource* source, pvtModel* model)
 {
-    return pvt::Guard(job->context, job->path, [&] { pvt::LoadGltf(*job, model); });
+    return pvt::Guard(job->context, job->path, [&] { pvt::LoadGltf(*job, *source, model); });
 }

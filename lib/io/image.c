@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Images through the module paravent_image: linking OpenImageIO itself would load 261 libraries at
 // the start of every process.
+#include "companion.h"
 #include "image_module.h"
-#include "module.h"
 #include "source.h"
 #include "text.h"
 

@@ -6,8 +6,9 @@
 
 #include "base/context.h"
 
-#include <ctype.h>
+#include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 pvtLoadOptions pvtDefaultLoadOptions(void)
 {
@@ -29,19 +30,25 @@ void pvtModel_Free(pvtContext* context, pvtModel* model)
     *model = (pvtModel){0};
 }
 
-static bool IsGlb(const pvtSource* source)
+// The first bytes of a file, enough to tell what it is.
+typedef struct Head {
+    char bytes[1024];
+    size_t size;
+} Head;
+
+static bool IsGlb(const Head* head)
 {
-    return source->size >= 4 && memcmp(source->bytes, "glTF", 4) == 0;
+    return head->size >= 4 && memcmp(head->bytes, "glTF", 4) == 0;
 }
 
 // Whether the first thing in the file, after a byte order mark and white space, is an object.
-static bool IsJson(const pvtSource* source)
+static bool IsJson(const Head* head)
 {
-    size_t at = source->size >= 3 && memcmp(source->bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-    while (at < source->size && isspace(source->bytes[at])) {
+    size_t at = head->size >= 3 && memcmp(head->bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+    while (at < head->size && memchr(" \t\r\n", head->bytes[at], 4) != NULL) {
         ++at;
     }
-    return at < source->size && source->bytes[at] == '{';
+    return at < head->size && head->bytes[at] == '{';
 }
 
 static bool IsImported(const char* path)
@@ -68,14 +75,33 @@ static pvtStatus FailUnknownFormat(pvtContext* context, const char* path)
                    path);
 }
 
-static pvtStatus LoadSource(const pvtLoadJob* job, pvtModel* model)
+static pvtStatus LoadGltf(const pvtLoadJob* job, pvtModel* model)
 {
-    if (job->source->size == 0) {
+    pvtSource source;
+    pvtStatus status = pvtReadOpenSource(job->context, job->file, job->size, job->path, &source);
+    if (status == PVT_OK) {
+        pvtReportProgress(job->context, 0.3);
+        status = pvtLoadGltf(job, &source, model);
+        pvtSource_Free(job->context, &source);
+    }
+    return status;
+}
+
+static pvtStatus LoadOpenFile(const pvtLoadJob* job, pvtModel* model)
+{
+    if (job->size == 0) {
         return pvtFail(job->context, PVT_INVALID_INPUT,
                        "%s: the file is empty; export the model again", job->path);
     }
-    if (IsGlb(job->source) || IsJson(job->source)) {
-        return pvtLoadGltf(job, model);
+    Head head;
+    const ssize_t got = pread(job->file, head.bytes, sizeof head.bytes, 0);
+    if (got < 0) {
+        return pvtFail(job->context, PVT_INVALID_INPUT, "%s cannot be read: %s", job->path,
+                       strerror(errno));
+    }
+    head.size = (size_t)got;
+    if (IsGlb(&head) || IsJson(&head)) {
+        return LoadGltf(job, model);
     }
     if (IsImported(job->path)) {
         return pvtImportModel(job, model);
@@ -94,15 +120,12 @@ pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* options, const
                        full.scene, (int)full.masked);
     }
     pvtBeginStage(context, "load");
-    pvtSource source;
-    pvtStatus status = pvtReadSource(context, path, full.maxBytes, &source);
-    if (status != PVT_OK) {
-        return status;
+    pvtLoadJob job = {context, &full, path, -1, 0};
+    pvtStatus status = pvtOpenSource(context, path, full.maxBytes, &job.file, &job.size);
+    if (status == PVT_OK) {
+        status = LoadOpenFile(&job, model);
+        close(job.file);
     }
-    pvtReportProgress(context, 0.3);
-    const pvtLoadJob job = {context, &full, path, &source};
-    status = LoadSource(&job, model);
-    pvtSource_Free(context, &source);
     if (status == PVT_OK) {
         pvtReportProgress(context, 1.0);
     }

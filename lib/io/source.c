@@ -60,8 +60,8 @@ static pvtStatus ReadBytes(pvtContext* context, int file, const char* label, pvt
             return pvtFailCancelled(context);
         }
         const size_t left = source->size - done;
-        const ssize_t got =
-            read(file, source->bytes + done, left < READ_PIECE ? left : (size_t)READ_PIECE);
+        const ssize_t got = pread(file, source->bytes + done,
+                                  left < READ_PIECE ? left : (size_t)READ_PIECE, (off_t)done);
         if (got < 0 && errno == EINTR) {
             continue;
         }
@@ -79,19 +79,16 @@ static pvtStatus ReadBytes(pvtContext* context, int file, const char* label, pvt
     return PVT_OK;
 }
 
-static pvtStatus ReadDescriptor(pvtContext* context, int file, const char* label, size_t maxBytes,
-                                pvtSource* source)
+pvtStatus pvtReadOpenSource(pvtContext* context, int file, size_t size, const char* label,
+                            pvtSource* source)
 {
-    pvtSource read = {0};
-    pvtStatus status = CheckKind(context, file, label, maxBytes, &read.size);
-    if (status != PVT_OK) {
-        return status;
-    }
-    read.bytes = pvtAllocate(context, read.size + PVT_SOURCE_PADDING, 1);
+    *source = (pvtSource){0};
+    pvtSource read = {.size = size};
+    read.bytes = pvtAllocate(context, size + PVT_SOURCE_PADDING, 1);
     if (read.bytes == NULL) {
         return pvtContext_GetStatus(context);
     }
-    status = ReadBytes(context, file, label, &read);
+    const pvtStatus status = ReadBytes(context, file, label, &read);
     if (status != PVT_OK) {
         pvtSource_Free(context, &read);
         return status;
@@ -100,17 +97,33 @@ static pvtStatus ReadDescriptor(pvtContext* context, int file, const char* label
     return PVT_OK;
 }
 
-pvtStatus pvtReadSource(pvtContext* context, const char* path, size_t maxBytes, pvtSource* source)
+pvtStatus pvtOpenSource(pvtContext* context, const char* path, size_t maxBytes, int* file,
+                        size_t* size)
 {
-    *source = (pvtSource){0};
-    const int file = open(path, kOpenFlags);
-    if (file < 0) {
+    *file = open(path, kOpenFlags);
+    if (*file < 0) {
         // A socket, or a device without a driver, cannot even be opened.
         return pvtFail(context, PVT_INVALID_INPUT, "%s cannot be read: %s", path,
                        errno == ENXIO ? "it is not a regular file" : strerror(errno));
     }
-    const pvtStatus status = ReadDescriptor(context, file, path, maxBytes, source);
-    close(file);
+    const pvtStatus status = CheckKind(context, *file, path, maxBytes, size);
+    if (status != PVT_OK) {
+        close(*file);
+        *file = -1;
+    }
+    return status;
+}
+
+pvtStatus pvtReadSource(pvtContext* context, const char* path, size_t maxBytes, pvtSource* source)
+{
+    *source = (pvtSource){0};
+    int file = -1;
+    size_t size = 0;
+    pvtStatus status = pvtOpenSource(context, path, maxBytes, &file, &size);
+    if (status == PVT_OK) {
+        status = pvtReadOpenSource(context, file, size, path, source);
+        close(file);
+    }
     return status;
 }
 
@@ -213,7 +226,11 @@ pvtStatus pvtReadSourceBeside(pvtContext* context, const char* modelPath, const 
         return pvtFail(context, PVT_INVALID_INPUT, "\"%s\" cannot be read: %s", name,
                        DescribeOpenError(error));
     }
-    const pvtStatus status = ReadDescriptor(context, file, name, maxBytes, source);
+    size_t size = 0;
+    pvtStatus status = CheckKind(context, file, name, maxBytes, &size);
+    if (status == PVT_OK) {
+        status = pvtReadOpenSource(context, file, size, name, source);
+    }
     close(file);
     return status;
 }

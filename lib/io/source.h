@@ -18,8 +18,14 @@ typedef struct pvtSource {
     size_t size;
 } pvtSource;
 
-/// Regular files only: a pipe, a device or a folder is PVT_INVALID_INPUT at once, whatever it would
-/// deliver. PVT_LIMIT above maxBytes.
+/// Opens a regular file: a pipe, a device or a folder is PVT_INVALID_INPUT at once, whatever it
+/// would deliver. PVT_LIMIT above maxBytes. To be closed by the caller.
+pvtStatus pvtOpenSource(pvtContext* context, const char* path, size_t maxBytes, int* file,
+                        size_t* size);
+/// Reads an open file of this size from its begin; `label` is its name for messages.
+pvtStatus pvtReadOpenSource(pvtContext* context, int file, size_t size, const char* label,
+                            pvtSource* source);
+/// Both together.
 pvtStatus pvtReadSource(pvtContext* context, const char* path, size_t maxBytes, pvtSource* source);
 
 /// Reads `name`, a relative path, from the folder that `modelPath` lies in. Nothing outside of that

@@ -3,7 +3,7 @@
 // should be and nowhere else.
 #include "files.h"
 
-#include "io/module.h"
+#include "io/companion.h"
 
 #include <sys/stat.h>
 
