@@ -99,24 +99,35 @@ pvtStatus pvtCreateMesh(pvtContext* context, const pvtVec3* positions, size_t po
     return PVT_OK;
 }
 
+static void Include(pvtBox3* box, pvtVec3 p)
+{
+    box->lower.x = p.x < box->lower.x ? p.x : box->lower.x;
+    box->lower.y = p.y < box->lower.y ? p.y : box->lower.y;
+    box->lower.z = p.z < box->lower.z ? p.z : box->lower.z;
+    box->upper.x = p.x > box->upper.x ? p.x : box->upper.x;
+    box->upper.y = p.y > box->upper.y ? p.y : box->upper.y;
+    box->upper.z = p.z > box->upper.z ? p.z : box->upper.z;
+}
+
 pvtBox3 pvtMesh_GetBounds(const pvtMesh* mesh)
 {
-    pvtBox3 box = {{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
     if (mesh->triangleCount == 0) {
-        return box;
+        return (pvtBox3){{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
     }
-    box.lower = box.upper = mesh->positions[mesh->indices[0]];
-    for (size_t i = 1; i < 3 * mesh->triangleCount; ++i) {
-        assert(mesh->indices[i] < mesh->positionCount);
-        const pvtVec3 p = mesh->positions[mesh->indices[i]];
-        box.lower.x = p.x < box.lower.x ? p.x : box.lower.x;
-        box.lower.y = p.y < box.lower.y ? p.y : box.lower.y;
-        box.lower.z = p.z < box.lower.z ? p.z : box.lower.z;
-        box.upper.x = p.x > box.upper.x ? p.x : box.upper.x;
-        box.upper.y = p.y > box.upper.y ? p.y : box.upper.y;
-        box.upper.z = p.z > box.upper.z ? p.z : box.upper.z;
+    const pvtVec3 first = mesh->positions[mesh->indices[0]];
+    // A box for each corner: three short chains of comparisons instead of one long one.
+    pvtBox3 boxes[3] = {{first, first}, {first, first}, {first, first}};
+    for (size_t i = 0; i < 3 * mesh->triangleCount; i += 3) {
+        for (size_t corner = 0; corner < 3; ++corner) {
+            assert(mesh->indices[i + corner] < mesh->positionCount);
+            Include(&boxes[corner], mesh->positions[mesh->indices[i + corner]]);
+        }
     }
-    return box;
+    for (int i = 1; i < 3; ++i) {
+        Include(&boxes[0], boxes[i].lower);
+        Include(&boxes[0], boxes[i].upper);
+    }
+    return boxes[0];
 }
 
 // Copies `part` behind what `whole` holds already; the counts say where that ends.

@@ -51,9 +51,7 @@ static void PullRow(const Sweep* sweep, const uint64_t* next, const uint64_t* in
         const uint64_t here = i + 1 == count ? next[i] | beyond : next[i];
         uint64_t pulled = here;
         if (dx > 0) {
-            const uint64_t after = i + 1 == count   ? 1
-                                   : i + 2 == count ? next[i + 1] | beyond
-                                                    : next[i + 1];
+            const uint64_t after = i + 1 == count ? 1 : next[i + 1];
             pulled = here >> 1 | after << 63;
         } else if (dx < 0) {
             pulled = here << 1 | (i == 0 ? 1 : next[i - 1] >> 63);

@@ -3,8 +3,8 @@
 //
 // Meijster, Roerdink and Hesselink, "A general algorithm for computing distance transforms in
 // linear time", 2000, second phase: the lower envelope of parabolas, in integers. The division
-// that finds where two parabolas cross is a multiplication here, exact because a quotient of
-// integers by 2 d keeps a distance of 1/(4 d) from every integer once 1/2 is added to its top.
+// that finds where two parabolas cross is a multiplication here. Rounding could only change its
+// floor where they cross at a whole number, and there both have the same value.
 #include "envelope.h"
 
 #include <assert.h>
@@ -34,7 +34,7 @@ static int FindCrossing(const pvtEnvelope* envelope, int top, int right, uint32_
     const int64_t apart = right - left;
     const int64_t difference =
         (int64_t)value - (int64_t)envelope->values[top] + apart * (right + left);
-    return (int)(((double)difference + 0.5) * envelope->reciprocals[apart]);
+    return (int)((double)difference * envelope->reciprocals[apart]);
 }
 
 static uint32_t Evaluate(uint32_t value, int distance)

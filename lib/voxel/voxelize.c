@@ -81,13 +81,13 @@ static void MarkBits(uint64_t* word, uint64_t mask)
     }
 }
 
-static void MarkSpan(const pvtBitGrid* grid, int y, int z, RowSpan span)
+static void MarkSpan(const pvtBitGrid* grid, int y, int z, int firstX, int lastX)
 {
     uint64_t* row = pvtBitGrid_GetRow(grid, y, z);
-    const size_t first = (size_t)span.first >> 6;
-    const size_t last = (size_t)span.last >> 6;
-    const uint64_t head = ~UINT64_C(0) << (span.first & 63);
-    const uint64_t tail = ~UINT64_C(0) >> (63 - (span.last & 63));
+    const size_t first = (size_t)firstX >> 6;
+    const size_t last = (size_t)lastX >> 6;
+    const uint64_t head = ~UINT64_C(0) << (firstX & 63);
+    const uint64_t tail = ~UINT64_C(0) >> (63 - (lastX & 63));
     if (first == last) {
         MarkBits(&row[first], head & tail);
         return;
@@ -97,6 +97,21 @@ static void MarkSpan(const pvtBitGrid* grid, int y, int z, RowSpan span)
         MarkBits(&row[i], ~UINT64_C(0));
     }
     MarkBits(&row[last], tail);
+}
+
+// True when the words of a short span are marked already.
+static bool IsSpanMarked(const pvtBitGrid* grid, int y, int z, RowSpan span)
+{
+    const uint64_t* row = pvtBitGrid_GetRow(grid, y, z);
+    const size_t first = (size_t)span.first >> 6;
+    const size_t last = (size_t)span.last >> 6;
+    const uint64_t head = ~UINT64_C(0) << (span.first & 63);
+    const uint64_t tail = ~UINT64_C(0) >> (63 - (span.last & 63));
+    if (first == last) {
+        return (~__atomic_load_n(&row[first], __ATOMIC_RELAXED) & head & tail) == 0;
+    }
+    return last == first + 1 && (~__atomic_load_n(&row[first], __ATOMIC_RELAXED) & head) == 0 &&
+           (~__atomic_load_n(&row[last], __ATOMIC_RELAXED) & tail) == 0;
 }
 
 static void WidenSpan(RowSpan* span, double a, double b)
@@ -219,8 +234,12 @@ static void MarkSlab(const Voxelizer* voxelizer, const Triangle* t, Slab* slab)
         AddPart(slab, t, low, high);
     }
     for (int y = slab->firstRow; y <= slab->lastRow; ++y) {
-        if (slab->spans[y].first <= slab->spans[y].last) {
-            MarkSpan(voxelizer->grid, y, slab->z, slab->spans[y]);
+        // Read one by one, as they were written just before: as a pair they would not be forwarded
+        // from the processor's store buffer.
+        const int first = slab->spans[y].first;
+        const int last = slab->spans[y].last;
+        if (first <= last) {
+            MarkSpan(voxelizer->grid, y, slab->z, first, last);
         }
     }
 }
@@ -238,9 +257,17 @@ static void MarkTriangle(Voxelizer* voxelizer, Triangle* t, RowSpan* spans)
     if ((x.first < x.last) + (y.first < y.last) + (z.first < z.last) <= 1) {
         for (int k = z.first; k <= z.last; ++k) {
             for (int j = y.first; j <= y.last; ++j) {
-                MarkSpan(voxelizer->grid, j, k, x);
+                MarkSpan(voxelizer->grid, j, k, x.first, x.last);
             }
         }
+        return;
+    }
+    // Where triangles are smaller than voxels, others have often marked all there is to mark.
+    if (x.last - x.first <= 1 && y.last - y.first <= 1 && z.last - z.first <= 1 &&
+        IsSpanMarked(voxelizer->grid, y.first, z.first, x) &&
+        IsSpanMarked(voxelizer->grid, y.last, z.first, x) &&
+        IsSpanMarked(voxelizer->grid, y.first, z.last, x) &&
+        IsSpanMarked(voxelizer->grid, y.last, z.last, x)) {
         return;
     }
     SortByZ(t);

@@ -147,6 +147,21 @@ static void the_plain_flood_reaches_what_a_slow_one_reaches(void** state)
     DestroyTestContext(context);
 }
 
+static pvtSolid FillWith(pvtContext* context, const pvtBitGrid* surface, pvtSolidOptions options)
+{
+    pvtSolid solid;
+    CHECK_OK(context, pvtFillSolid(context, &options, surface, &solid));
+    return solid;
+}
+
+static uint64_t CountStrict(pvtContext* context, const pvtBitGrid* surface, pvtSolidOptions options)
+{
+    pvtSolid solid = FillWith(context, surface, options);
+    const uint64_t count = solid.strictCount;
+    pvtSolid_Free(context, &solid);
+    return count;
+}
+
 // A tunnel of one voxel that winds through a block, layer by layer, into a chamber.
 static void a_winding_tunnel_lets_the_flood_in(void** state)
 {
@@ -181,6 +196,27 @@ static void a_winding_tunnel_lets_the_flood_in(void** state)
     assert_int_equal(solid.strictCount, 0);
     pvtSolid_Free(context, &solid);
     pvtBitGrid_Free(context, &surface);
+    DestroyTestContext(context);
+}
+
+// Nothing but the carry from word to word leads through it.
+static void a_straight_tunnel_of_several_words_is_flooded_from_either_end(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    for (int end = 0; end < 2; ++end) {
+        pvtBitGrid surface;
+        MakeEmptyGrid(context, 300, 5, 5, &surface);
+        for (int i = 0; i < 298 * 9; ++i) {
+            const int v[3] = {1 + i % 298, 1 + i / 298 % 3, 1 + i / 894};
+            const bool isOpen = end == 0 ? v[0] < 290 : v[0] > 10;
+            if (!(isOpen && v[1] == 2 && v[2] == 2)) {
+                SetVoxel(&surface, v[0], v[1], v[2]);
+            }
+        }
+        assert_int_equal(CountStrict(context, &surface, pvtDefaultSolidOptions()), 0);
+        pvtBitGrid_Free(context, &surface);
+    }
     DestroyTestContext(context);
 }
 
@@ -239,21 +275,6 @@ static void ClearVoxel(pvtBitGrid* grid, int x, int y, int z)
 {
     const size_t row = (size_t)z * (size_t)grid->frame.size[1] + (size_t)y;
     grid->words[row * grid->wordsPerRow + (size_t)x / 64] &= ~(UINT64_C(1) << (x % 64));
-}
-
-static pvtSolid FillWith(pvtContext* context, const pvtBitGrid* surface, pvtSolidOptions options)
-{
-    pvtSolid solid;
-    CHECK_OK(context, pvtFillSolid(context, &options, surface, &solid));
-    return solid;
-}
-
-static uint64_t CountStrict(pvtContext* context, const pvtBitGrid* surface, pvtSolidOptions options)
-{
-    pvtSolid solid = FillWith(context, surface, options);
-    const uint64_t count = solid.strictCount;
-    pvtSolid_Free(context, &solid);
-    return count;
 }
 
 // A box of 12 × 12 × 12 free voxels with a square hole in its roof.
@@ -520,6 +541,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_plain_flood_reaches_what_a_slow_one_reaches),
         cmocka_unit_test(a_winding_tunnel_lets_the_flood_in),
+        cmocka_unit_test(a_straight_tunnel_of_several_words_is_flooded_from_either_end),
         cmocka_unit_test(a_ball_reaches_what_slow_dilation_and_flood_reach),
         cmocka_unit_test(holes_narrower_than_the_ball_close_and_wider_ones_do_not),
         cmocka_unit_test(the_result_does_not_depend_on_the_padding),
