@@ -8,6 +8,9 @@
 #include <math.h>
 #include <string.h>
 
+// How much is done between two questions whether to stop.
+enum { COPY_WORDS = 1 << 20, CANCEL_INTERVAL = 16 };
+
 void pvtBitGrid_Free(pvtContext* context, pvtBitGrid* grid)
 {
     pvtRelease(context, grid->words);
@@ -47,9 +50,16 @@ pvtStatus pvtCreateBitGrid(pvtContext* context, const pvtGridFrame* frame, pvtBi
 
 pvtStatus pvtCopyBitGrid(pvtContext* context, const pvtBitGrid* grid, pvtBitGrid* copy)
 {
-    const pvtStatus status = pvtCreateBitGrid(context, &grid->frame, copy);
-    if (status == PVT_OK) {
-        memcpy(copy->words, grid->words, grid->wordCount * sizeof *grid->words);
+    pvtStatus status = pvtCreateBitGrid(context, &grid->frame, copy);
+    const size_t step = COPY_WORDS;
+    for (size_t begin = 0; status == PVT_OK && begin < grid->wordCount; begin += step) {
+        const size_t left = grid->wordCount - begin;
+        memcpy(copy->words + begin, grid->words + begin,
+               (left < step ? left : step) * sizeof *grid->words);
+        status = pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
+    }
+    if (status != PVT_OK) {
+        pvtBitGrid_Free(context, copy);
     }
     return status;
 }
@@ -114,6 +124,10 @@ pvtStatus pvtMoveBitGrid(pvtContext* context, const pvtBitGrid* grid, const int 
         return status;
     }
     for (int z = 0; z < size[2]; ++z) {
+        if (z % CANCEL_INTERVAL == 0 && pvtIsCancelled(context)) {
+            pvtBitGrid_Free(context, moved);
+            return pvtFailCancelled(context);
+        }
         for (int y = 0; y < size[1]; ++y) {
             const int from[2] = {y - offset[1], z - offset[2]};
             if (from[0] < 0 || from[1] < 0 || from[0] >= grid->frame.size[1] ||

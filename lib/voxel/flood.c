@@ -164,12 +164,15 @@ static pvtStatus SweepToTheEnd(pvtContext* context, Flood* flood)
 }
 
 // Free voxels of the border are reached, and every row has yet to be looked at.
-static void Seed(Flood* flood)
+static pvtStatus Seed(pvtContext* context, Flood* flood)
 {
     const int* size = flood->blocked->frame.size;
     const size_t count = flood->blocked->wordsPerRow;
     const size_t lastBit = (size_t)size[0] - 1;
     for (int z = 0; z < size[2]; ++z) {
+        if (z % CANCEL_INTERVAL == 0 && pvtIsCancelled(context)) {
+            return pvtFailCancelled(context);
+        }
         for (int y = 0; y < size[1]; ++y) {
             const uint64_t* blocked = pvtBitGrid_GetRow(flood->blocked, y, z);
             uint64_t* reached = pvtBitGrid_GetRow(flood->reached, y, z);
@@ -185,6 +188,7 @@ static void Seed(Flood* flood)
             MarkPending(flood, y, z);
         }
     }
+    return PVT_OK;
 }
 
 pvtStatus pvtFloodFromBorder(pvtContext* context, const pvtBitGrid* blocked, pvtBitGrid* reached)
@@ -197,8 +201,10 @@ pvtStatus pvtFloodFromBorder(pvtContext* context, const pvtBitGrid* blocked, pvt
     if (flood.pending == NULL) {
         return pvtContext_GetStatus(context);
     }
-    Seed(&flood);
-    const pvtStatus status = SweepToTheEnd(context, &flood);
+    pvtStatus status = Seed(context, &flood);
+    if (status == PVT_OK) {
+        status = SweepToTheEnd(context, &flood);
+    }
     pvtRelease(context, flood.pending);
     return status;
 }

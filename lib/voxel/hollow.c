@@ -29,7 +29,8 @@ enum {
     MARGIN = 1,
     SMALLEST_BALL = 2,
     MORE_ROOM = 2,
-    EXACT_ENOUGH = 8
+    EXACT_ENOUGH = 8,
+    CANCEL_INTERVAL = 16
 };
 
 static const double roomFactor = 1.5;
@@ -89,6 +90,10 @@ static pvtStatus HalveGrid(pvtContext* context, const pvtBitGrid* grid, pvtBitGr
         return status;
     }
     for (int z = 0; z < grid->frame.size[2]; ++z) {
+        if (z % CANCEL_INTERVAL == 0 && pvtIsCancelled(context)) {
+            pvtBitGrid_Free(context, half);
+            return pvtFailCancelled(context);
+        }
         for (int y = 0; y < grid->frame.size[1]; ++y) {
             const uint64_t* from = pvtBitGrid_GetRow(grid, y, z);
             uint64_t* row = pvtBitGrid_GetRow(half, y / 2, z / 2);
@@ -415,5 +420,6 @@ pvtStatus pvtFindRemedy(pvtContext* context, const pvtSolidOptions* options,
     if (status != PVT_OK) {
         *remedy = (pvtRemedy){0};
     }
-    return status;
+    // The solid is whole without it.
+    return status == PVT_LIMIT ? PVT_OK : status;
 }

@@ -54,8 +54,9 @@ static pvtStatus FloodPadded(pvtContext* context, const pvtSolidOptions* options
     const bool needsBlocked = squaredReach > 0 || options->ground;
     pvtBitGrid blocked = {0};
     pvtBitGrid reached = {0};
-    pvtStatus status = PVT_OK;
-    if (needsBlocked) {
+    pvtStatus status =
+        pvtCheckGridMemory(context, surface, needsBlocked ? 2.0 : 1.0, "flooding the outside");
+    if (status == PVT_OK && needsBlocked) {
         status = FindBlocked(context, options, surface, squaredReach, groundLayer, &blocked);
     }
     if (status == PVT_OK) {

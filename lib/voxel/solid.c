@@ -109,6 +109,7 @@ pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
         status = pvtFindInside(context, options, surface, &solid->inside);
     }
     if (status == PVT_OK) {
+        pvtReportProgress(context, 0.7);
         CountVoxels(solid);
         status = pvtFindRemedy(context, options, surface, solid->strictCount, &solid->remedy);
     }

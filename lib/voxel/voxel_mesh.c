@@ -163,8 +163,13 @@ static uint64_t CountFaces(const Mesher* mesher, int z)
     return count;
 }
 
-static bool ShouldStop(Mesher* mesher)
+// Counting is the first third of the work.
+static bool ShouldStop(Mesher* mesher, size_t z, int worker, bool isWriting)
 {
+    if (worker == 0) {
+        const double share = (double)z / mesher->grid->frame.size[2] / 3.0;
+        pvtReportProgress(mesher->context, isWriting ? 1.0 / 3.0 + 2.0 * share : share);
+    }
     if (pvtIsCancelled(mesher->context)) {
         atomic_store(&mesher->cancelled, true);
     }
@@ -173,9 +178,8 @@ static bool ShouldStop(Mesher* mesher)
 
 static void CountSlabs(size_t begin, size_t end, int worker, void* taskData)
 {
-    (void)worker;
     Mesher* mesher = taskData;
-    for (size_t z = begin; z < end && !ShouldStop(mesher); ++z) {
+    for (size_t z = begin; z < end && !ShouldStop(mesher, z, worker, false); ++z) {
         VertexCounter counter = {&mesher->table, 0};
         VisitCorners(mesher, (int)z, CountVertices, &counter);
         mesher->firstVertices[z + 1] = counter.count;
@@ -266,7 +270,7 @@ static void WriteSlabs(size_t begin, size_t end, int worker, void* taskData)
     Mesher* mesher = taskData;
     CornerSlab slabs[2] = {mesher->corners[2 * worker], mesher->corners[2 * worker + 1]};
     WriteCorners(mesher, &slabs[0], (int)begin, true);
-    for (size_t z = begin; z < end && !ShouldStop(mesher); ++z) {
+    for (size_t z = begin; z < end && !ShouldStop(mesher, z, worker, true); ++z) {
         const bool isLast = z + 1 == (size_t)mesher->grid->frame.size[2];
         WriteCorners(mesher, &slabs[1], (int)z + 1, isLast || z + 1 < end);
         WriteFaces(mesher, slabs, (int)z);

@@ -241,6 +241,35 @@ static void the_search_survives_failing_allocations_and_cancelling(void** state)
     DestroyTestContext(context);
 }
 
+// Looking for a remedy takes more memory than the solid does, and the solid is the promise.
+static void the_memory_limit_leaves_the_remedy_out_before_it_fails(void** state)
+{
+    (void)state;
+    int refused = 0;
+    int without = 0;
+    int with = 0;
+    for (size_t limit = 24000; limit < 1500000; limit += limit / 8) {
+        pvtContextDef def = pvtDefaultContextDef();
+        def.memoryLimit = limit;
+        def.threadCount = 1;
+        pvtContext* context = NULL;
+        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+        pvtBitGrid surface;
+        MakeShell(context, 20, 5.0, &surface);
+        const pvtSolidOptions options = pvtDefaultSolidOptions();
+        pvtSolid solid;
+        const pvtStatus status = pvtFillSolid(context, &options, &surface, &solid);
+        assert_true(status == PVT_OK || status == PVT_LIMIT);
+        refused += status == PVT_LIMIT;
+        without += status == PVT_OK && solid.remedy.smallestHole == 0.0;
+        with += status == PVT_OK && solid.remedy.smallestHole > 0.0;
+        pvtSolid_Free(context, &solid);
+        pvtBitGrid_Free(context, &surface);
+        DestroyTestContext(context);
+    }
+    assert_true(refused > 0 && without > 0 && with > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -250,6 +279,7 @@ int main(void)
         cmocka_unit_test(the_ground_is_told_for_a_hall_without_a_floor),
         cmocka_unit_test(terrain_is_told_for_a_height_field),
         cmocka_unit_test(a_hollow_solid_is_warned_about_with_the_size_that_helps),
+        cmocka_unit_test(the_memory_limit_leaves_the_remedy_out_before_it_fails),
         cmocka_unit_test(the_search_survives_failing_allocations_and_cancelling),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
