@@ -12,7 +12,7 @@
 #include <math.h>
 
 // Below this many points steps are chosen with care rather than for speed.
-enum { FEW_POINTS = 192 };
+enum { FEW_POINTS = 96 };
 
 typedef struct Builder {
     const pvtChainOptions* options;

@@ -38,6 +38,29 @@ static bool IsRangeCovered(const pvtBitmap* cells, int64_t row, const CellRange*
     return pvtIsBitRangeSet(words, (size_t)range->begin, (size_t)range->end);
 }
 
+// The cells around the middle corner that the triangle's angle there opens into. Most triangles
+// that are not covered stand on a clear cell there.
+static bool IsMiddleCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3])
+{
+    const pvtPoint2 at = corners[1];
+    const bool isTurned = pvtOrient(at, corners[0], corners[2]) < 0;
+    const pvtPoint2 first = corners[isTurned ? 2 : 0], second = corners[isTurned ? 0 : 2];
+    const int64_t x1 = (int64_t)first.x - at.x, y1 = (int64_t)first.y - at.y;
+    const int64_t x2 = (int64_t)second.x - at.x, y2 = (int64_t)second.y - at.y;
+    const int shift = __builtin_ctz((unsigned)unit);
+    for (int quadrant = 0; quadrant < 4; ++quadrant) {
+        const int x = quadrant % 2 == 0 ? -1 : 1, y = quadrant < 2 ? -1 : 1;
+        // Two angles overlap when a side of one, or the middle of the other, lies in the other.
+        const bool isTouched = (x1 * x > 0 && y1 * y > 0) || (x2 * x > 0 && y2 * y > 0) ||
+                               (x1 * y - y1 * x > 0 && x * y2 - y * x2 > 0);
+        if (isTouched &&
+            !pvtBitmap_Get(cells, (at.x - (x < 0)) >> shift, (at.y - (y < 0)) >> shift)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool IsRowCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3],
                          int64_t row)
 {
@@ -53,6 +76,9 @@ bool pvtIsTriangleCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 
 {
     if (pvtOrient(corners[0], corners[1], corners[2]) == 0) {
         return true;
+    }
+    if (!IsMiddleCovered(cells, unit, corners)) {
+        return false;
     }
     const int32_t y0 = corners[0].y, y1 = corners[1].y, y2 = corners[2].y;
     const int64_t first = pvtFloorDivide(pvtMinInt64(y0, pvtMinInt64(y1, y2)), unit);

@@ -147,7 +147,7 @@ static void ScoreEdge(pvtLinks* links, uint32_t node)
     GetMeetingCost(&way, *meeting, &cost);
     const bool isAtEnd =
         pvtIsSamePoint(*meeting, way.before) || pvtIsSamePoint(*meeting, way.after);
-    if (isAtEnd || side == 0 || (side < 0 && !IsCovered(links, way.from, way.to, *meeting))) {
+    if (isAtEnd || side == 0 || (side < 0 && !IsCovered(links, way.from, *meeting, way.to))) {
         pvtQueue_Drop(&links->queue, step);
         return;
     }
