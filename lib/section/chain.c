@@ -90,11 +90,11 @@ static size_t GetLinksCapacity(const pvtLoopSet* polygons, uint32_t careful)
     return most;
 }
 
-// Twice the points that a longest link can have, for those that only shorter links have.
+// Points of the longest link and of shorter ones.
 static size_t GetChainCapacity(const pvtLoopSet* polygons, size_t loop, uint32_t longest)
 {
     const size_t count = pvtLoopSet_GetSize(polygons, loop);
-    return 2 * (count < longest ? count : longest);
+    return pvtGetLinkNodeLimit(count < longest ? count : longest);
 }
 
 static pvtStatus CreateChains(pvtContext* context, const Builder* builder, pvtChainSet* chains)
@@ -153,9 +153,12 @@ static void FreeBuilder(pvtContext* context, Builder* builder)
 static void AddChain(const pvtLinks* links, pvtChainSet* chains)
 {
     for (uint32_t node = links->first; node != UINT32_MAX; node = links->nodes[node].behind) {
-        chains->points[chains->pointCount] = links->ring.nodes[node].point;
-        chains->ranks[chains->pointCount] = links->nodes[node].rank;
-        chains->limits[chains->pointCount++] = links->nodes[node].limit;
+        const pvtLinkNode* at = &links->nodes[node];
+        if (at->rank <= at->limit) { // not when it slid on at once
+            chains->points[chains->pointCount] = links->ring.nodes[node].point;
+            chains->ranks[chains->pointCount] = at->rank;
+            chains->limits[chains->pointCount++] = at->limit;
+        }
     }
     chains->starts[++chains->count] = chains->pointCount;
 }

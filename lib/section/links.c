@@ -31,13 +31,14 @@ typedef struct EdgeWay {
 pvtStatus pvtCreateLinks(pvtContext* context, size_t capacity, uint32_t longest, pvtLinks* links)
 {
     *links = (pvtLinks){.longest = longest};
-    pvtStatus status = pvtCreateRing(context, capacity, &links->ring);
+    const size_t nodes = pvtGetLinkNodeLimit(capacity);
+    pvtStatus status = pvtCreateRing(context, capacity, nodes, &links->ring);
     if (status == PVT_OK) {
-        status = pvtCreateQueue(context, 4 * capacity, 2 * capacity, &links->queue);
+        status = pvtCreateQueue(context, 2 * nodes, nodes, &links->queue);
     }
     if (status == PVT_OK) {
-        links->nodes = pvtAllocate(context, 2 * capacity, sizeof *links->nodes);
-        links->meetings = pvtAllocate(context, 2 * capacity, sizeof *links->meetings);
+        links->nodes = pvtAllocate(context, nodes, sizeof *links->nodes);
+        links->meetings = pvtAllocate(context, nodes, sizeof *links->meetings);
         if (links->nodes == NULL || links->meetings == NULL) {
             status = pvtContext_GetStatus(context);
         }
@@ -57,7 +58,7 @@ void pvtLinks_Free(pvtContext* context, pvtLinks* links)
     *links = (pvtLinks){0};
 }
 
-static bool IsCovered(const pvtLinks* links, pvtPoint2 a, pvtPoint2 b, pvtPoint2 c)
+bool pvtLinks_IsCovered(const pvtLinks* links, pvtPoint2 a, pvtPoint2 b, pvtPoint2 c)
 {
     const pvtPoint2 corners[3] = {a, b, c};
     // Once edges may run through points it is no longer known what lies on their right.
@@ -70,7 +71,7 @@ static void ScorePoint(pvtLinks* links, uint32_t node)
 {
     const pvtPass pass = pvtRing_GetPass(&links->ring, node);
     const int64_t area2 = pvtOrient(pass.before, pass.at, pass.after);
-    if (area2 < 0 && !IsCovered(links, pass.before, pass.at, pass.after)) {
+    if (area2 < 0 && !pvtLinks_IsCovered(links, pass.before, pass.at, pass.after)) {
         pvtQueue_Drop(&links->queue, 2 * node);
         return;
     }
@@ -147,7 +148,8 @@ static void ScoreEdge(pvtLinks* links, uint32_t node)
     GetMeetingCost(&way, *meeting, &cost);
     const bool isAtEnd =
         pvtIsSamePoint(*meeting, way.before) || pvtIsSamePoint(*meeting, way.after);
-    if (isAtEnd || side == 0 || (side < 0 && !IsCovered(links, way.from, *meeting, way.to))) {
+    if (isAtEnd || side == 0 ||
+        (side < 0 && !pvtLinks_IsCovered(links, way.from, *meeting, way.to))) {
         pvtQueue_Drop(&links->queue, step);
         return;
     }
@@ -191,24 +193,21 @@ static bool IsInside(const pvtPoint2 corners[3], pvtPoint2 point)
            pvtOrient(corners[2], corners[0], point) >= 0;
 }
 
-// A point in one of the triangles that a meeting cuts off or adds. `others` are the points of the
-// way that are not its corners.
-static uint32_t FindCutBlocker(const pvtLinks* links, const pvtPoint2 corners[3],
-                               const uint32_t ways[4], const uint32_t others[2])
+uint32_t pvtLinks_FindPoint(const pvtLinks* links, const pvtPoint2 corners[3],
+                            const uint32_t way[4], const uint32_t others[2])
 {
     if (pvtOrient(corners[0], corners[1], corners[2]) == 0) {
         return NONE;
     }
     for (int i = 0; i < 2; ++i) {
-        if (others[i] != NONE && IsInside(corners, links->ring.nodes[others[i]].point)) {
+        if (IsInside(corners, links->ring.nodes[others[i]].point)) {
             return others[i];
         }
     }
-    return pvtRing_FindPoint(&links->ring, corners, ways);
+    return pvtRing_FindPoint(&links->ring, corners, way);
 }
 
-// The edge that leads to the way, or on from it, must not run into the triangle at that end.
-static bool RunsIn(const pvtLinks* links, const pvtPoint2 corners[3], uint32_t end)
+bool pvtLinks_RunsIn(const pvtLinks* links, const pvtPoint2 corners[3], uint32_t end)
 {
     if (pvtOrient(corners[0], corners[1], corners[2]) == 0) {
         return false;
@@ -218,13 +217,14 @@ static bool RunsIn(const pvtLinks* links, const pvtPoint2 corners[3], uint32_t e
     return pvtEar_IsBlocked(&ear, &pass);
 }
 
-// A point of the boundary that lies in what the meeting cuts off or adds.
+// A point of the boundary that lies in what the meeting cuts off or adds. The way's own points are
+// corners of some of the three triangles, and must not lie in the others.
 static uint32_t FindPointInCuts(const pvtLinks* links, const uint32_t way[4],
                                 const pvtPoint2 cuts[3][3])
 {
     const uint32_t others[3][2] = {{way[2], way[3]}, {way[0], way[3]}, {way[0], way[1]}};
     for (int i = 0; i < 3; ++i) {
-        const uint32_t blocker = FindCutBlocker(links, cuts[i], way, others[i]);
+        const uint32_t blocker = pvtLinks_FindPoint(links, cuts[i], way, others[i]);
         if (blocker != NONE) {
             return blocker;
         }
@@ -251,10 +251,10 @@ static uint32_t FindEdgeBlocker(const pvtLinks* links, uint32_t node)
     if (blocker != NONE) {
         return blocker;
     }
-    if (RunsIn(links, cuts[0], way[0])) {
+    if (pvtLinks_RunsIn(links, cuts[0], way[0])) {
         return nodes[way[0]].before;
     }
-    if (RunsIn(links, cuts[2], way[3])) {
+    if (pvtLinks_RunsIn(links, cuts[2], way[3])) {
         return nodes[way[3]].after;
     }
     return pvtRing_FindEdge(&links->ring, at.from, meeting, way);
@@ -306,7 +306,7 @@ static void BeginLinks(pvtLinks* links)
     } while (node != links->first);
 }
 
-static void TakeOut(pvtLinks* links, uint32_t node, uint32_t rank)
+void pvtLinks_TakeOut(pvtLinks* links, uint32_t node, uint32_t rank)
 {
     links->nodes[node].rank = rank;
     pvtRing_Remove(&links->ring, node);
@@ -315,44 +315,78 @@ static void TakeOut(pvtLinks* links, uint32_t node, uint32_t rank)
     pvtQueue_Wake(&links->queue, node);
 }
 
-static void TakeOutPoint(pvtLinks* links, uint32_t node)
+uint32_t pvtLinks_PutIn(pvtLinks* links, uint32_t node, pvtPoint2 point, uint32_t limit,
+                        uint32_t behind)
 {
-    const pvtRingNode gone = links->ring.nodes[node];
-    TakeOut(links, node, links->ring.count);
-    ScorePoint(links, gone.before);
-    ScorePoint(links, gone.after);
-    ScoreEdge(links, links->ring.nodes[gone.before].before);
-    ScoreEdge(links, gone.before);
-    ScoreEdge(links, gone.after);
+    const uint32_t made = pvtRing_InsertAfter(&links->ring, node, point);
+    links->nodes[made] = (pvtLinkNode){3, limit, links->nodes[behind].behind};
+    links->nodes[behind].behind = made;
+    return made;
 }
 
-static void TakeOutEdge(pvtLinks* links, uint32_t from)
+// Scores all steps that a change at a point, or just behind it, has a part in.
+static void ScoreAround(pvtLinks* links, uint32_t node)
+{
+    const pvtRingNode* nodes = links->ring.nodes;
+    const uint32_t before = nodes[node].before, after = nodes[node].after;
+    ScorePoint(links, before);
+    ScorePoint(links, node);
+    ScorePoint(links, after);
+    ScoreEdge(links, nodes[before].before);
+    ScoreEdge(links, before);
+    ScoreEdge(links, node);
+    ScoreEdge(links, after);
+}
+
+// Returns the node before the gap.
+static uint32_t TakeOutPoint(pvtLinks* links, uint32_t node)
+{
+    const uint32_t before = links->ring.nodes[node].before;
+    pvtLinks_TakeOut(links, node, links->ring.count);
+    ScoreAround(links, before);
+    return before;
+}
+
+// Returns the node before the one where the edge's neighbours meet.
+static uint32_t TakeOutEdge(pvtLinks* links, uint32_t from)
 {
     const pvtPoint2 meeting = links->meetings[from];
     const uint32_t size = links->ring.count;
     const uint32_t before = links->ring.nodes[from].before;
-    TakeOut(links, links->ring.nodes[from].after, size);
-    TakeOut(links, from, size);
-    const uint32_t made = pvtRing_InsertAfter(&links->ring, before, meeting);
-    const uint32_t after = links->ring.nodes[made].after;
-    links->nodes[made] = (pvtLinkNode){3, size - 1, links->nodes[from].behind};
-    links->nodes[from].behind = made;
-    ScorePoint(links, before);
-    ScorePoint(links, made);
-    ScorePoint(links, after);
-    ScoreEdge(links, links->ring.nodes[before].before);
-    ScoreEdge(links, before);
-    ScoreEdge(links, made);
-    ScoreEdge(links, after);
+    pvtLinks_TakeOut(links, links->ring.nodes[from].after, size);
+    pvtLinks_TakeOut(links, from, size);
+    const uint32_t made = pvtLinks_PutIn(links, before, meeting, size - 1, from);
+    ScoreAround(links, made);
+    return before;
+}
+
+// Slides `reach` points from `node` on, and those around each that slid, for as long as that helps.
+static void SlidePoints(pvtLinks* links, uint32_t node, uint32_t reach)
+{
+    for (uint32_t unmoved = 0; unmoved < reach && links->slidesLeft > 0;) {
+        const uint32_t moved = pvtLinks_Slide(links, node);
+        if (moved == NONE) {
+            ++unmoved;
+            node = links->ring.nodes[node].after;
+        } else {
+            --links->slidesLeft;
+            ScoreAround(links, moved);
+            unmoved = 0;
+            reach = 3;
+            node = links->ring.nodes[moved].before;
+        }
+    }
 }
 
 bool pvtLinks_Build(pvtLinks* links, const pvtPoint2* points, size_t count)
 {
     assert(count >= 3);
+    const size_t nodes = pvtGetLinkNodeLimit(count);
     pvtRing_Reset(&links->ring, points, count);
-    pvtQueue_Reset(&links->queue, 4 * count, 2 * count);
+    pvtQueue_Reset(&links->queue, 2 * nodes, nodes);
     links->first = NONE;
     links->allowsPinch = false;
+    links->slidesLeft = nodes - 2 * count;
     ScoreAll(links);
     uint32_t step;
     while (links->ring.count > 3 && FindStepAnyhow(links, &step)) {
@@ -361,10 +395,11 @@ bool pvtLinks_Build(pvtLinks* links, const pvtPoint2* points, size_t count)
             links->queue.places[step].cost > 0) {
             BeginLinks(links);
         }
-        if (step % 2 == 0) {
-            TakeOutPoint(links, step / 2);
-        } else {
-            TakeOutEdge(links, step / 2);
+        const bool isPoint = step % 2 == 0;
+        const uint32_t node =
+            isPoint ? TakeOutPoint(links, step / 2) : TakeOutEdge(links, step / 2);
+        if (links->first != NONE && links->ring.count <= PVT_SLIDE_POINTS) {
+            SlidePoints(links, node, isPoint ? 2 : 3);
         }
     }
     if (links->first == NONE) {

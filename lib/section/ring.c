@@ -13,10 +13,10 @@ typedef struct Box {
     int32_t left, right, bottom, top;
 } Box;
 
-pvtStatus pvtCreateRing(pvtContext* context, size_t capacity, pvtRing* ring)
+pvtStatus pvtCreateRing(pvtContext* context, size_t capacity, size_t nodeCapacity, pvtRing* ring)
 {
     *ring = (pvtRing){
-        .nodes = pvtAllocate(context, 2 * capacity, sizeof *ring->nodes),
+        .nodes = pvtAllocate(context, nodeCapacity, sizeof *ring->nodes),
         .xs = pvtAllocate(context, capacity + BLOCK, sizeof *ring->xs),
         .ys = pvtAllocate(context, capacity + BLOCK, sizeof *ring->ys),
         .nextXs = pvtAllocate(context, capacity + BLOCK, sizeof *ring->nextXs),

@@ -21,8 +21,8 @@ typedef struct pvtRing {
     uint32_t nodeCount;       ///< ever in it
 } pvtRing;
 
-/// Room for `capacity` points in the ring at once and twice as many ever.
-pvtStatus pvtCreateRing(pvtContext* context, size_t capacity, pvtRing* ring);
+/// Room for `capacity` points in the ring at once, and for `nodeCapacity` ever.
+pvtStatus pvtCreateRing(pvtContext* context, size_t capacity, size_t nodeCapacity, pvtRing* ring);
 void pvtRing_Free(pvtContext* context, pvtRing* ring);
 /// Nodes 0 to count − 1 are the points, in order.
 void pvtRing_Reset(pvtRing* ring, const pvtPoint2* points, size_t count);

@@ -129,7 +129,7 @@ pvtStatus pvtTriangulatePolygon(pvtContext* context, const pvtPoint2* points, si
         return pvtFail(context, PVT_INVALID_ARGUMENT, "a polygon of %zu points", count);
     }
     Clipper clipper = {0};
-    pvtStatus status = pvtCreateRing(context, count, &clipper.ring);
+    pvtStatus status = pvtCreateRing(context, count, count, &clipper.ring);
     if (status == PVT_OK) {
         status = pvtCreateQueue(context, count, count, &clipper.queue);
     }
