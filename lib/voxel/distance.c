@@ -14,7 +14,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-enum { LINES_A_TILE = 16 };
+enum { LINES_A_TILE = 32 };
 
 // slab[y][x] = rows since the last set voxel of the column, as a plain count.
 static bool CountUp(const pvtBitGrid* grid, int z, uint32_t most, uint32_t* slab)

@@ -27,7 +27,8 @@ PVT_API pvtStatus pvtCreateMesh(pvtContext* context, const pvtVec3* positions, s
 /// The box around the positions that triangles use; empty for a mesh without triangles.
 PVT_API pvtBox3 pvtMesh_GetBounds(const pvtMesh* mesh);
 
-/// Merges positions that are equal to the last bit and drops the unused. Order of first use.
+/// Merges positions that are equal to the last bit (0 and −0 are) and drops the unused. Order of
+/// first use.
 PVT_API pvtStatus pvtWeldMesh(pvtContext* context, const pvtMesh* mesh, pvtMesh* welded);
 
 /// Adds `other`'s triangles behind those of `mesh`; on failure `mesh` is as it was.

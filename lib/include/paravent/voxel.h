@@ -39,7 +39,10 @@ typedef struct pvtVoxelizeOptions {
 
 PVT_API pvtVoxelizeOptions pvtDefaultVoxelizeOptions(void);
 
-/// Marks every voxel whose closed cube a triangle touches; rounding errors only ever mark more.
+/// Marks every voxel whose closed cube a triangle touches; rounding errors only ever mark more, and
+/// none that is farther than 4e-9 voxels from a triangle along any axis. The bounds lie in the
+/// middle of the frame, so that their faces fall inside voxels: a side of n whole voxels touches
+/// n + 1 and leaves n − 1 untouched between its ends.
 /// Degenerate triangles count as segments and points. PVT_LIMIT names the finest resolution that
 /// would fit in memory; PVT_INVALID_INPUT for a mesh without triangles or of no extent at all.
 PVT_API pvtStatus pvtVoxelizeMesh(pvtContext* context, const pvtVoxelizeOptions* options,
@@ -49,7 +52,8 @@ typedef enum pvtAxis { PVT_AXIS_X, PVT_AXIS_Y, PVT_AXIS_Z } pvtAxis;
 
 typedef struct pvtSolidOptions {
     double smallestHole; ///< [wu] openings narrower than this count as closed; default 0
-    bool ground;         ///< the plane below the bounds counts as closed; default false
+    bool ground;         ///< the plane below the surface's bounds counts as closed: a mirror, below
+                         ///< which everything repeats, and nothing is inside; default false
     bool terrain;        ///< all below the lowest surface of a column is inside; default false
     pvtAxis up;          ///< for ground and terrain; default y
     int enclosed;        ///< 0 to 25 of the 26 directions: an outside voxel from which at most this
@@ -81,13 +85,14 @@ PVT_API pvtSolidOptions pvtDefaultSolidOptions(void);
 /// Floods from the border through free voxels, 6-connected; what is not reached is inside.
 /// With smallestHole D only a ball of diameter D can pass: nothing wider than D plus √12 voxels is
 /// ever covered. Warns, with the option that would help, when a closed-looking mesh comes out
-/// hollow. The surface should have been padded by D.
+/// hollow, and leaves it in `remedy`. The result does not depend on how the surface was padded.
 PVT_API pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
                                const pvtBitGrid* surface, pvtSolid* solid);
 PVT_API void pvtSolid_Free(pvtContext* context, pvtSolid* solid);
 
 /// A smallest hole [wu] at which a hollow solid would fill, tried at growing sizes up to a quarter
-/// of the longest side; 0 when none does, or when the solid is not hollow.
+/// of the longest side; 0 when none does by itself, or when the solid is not hollow. The remedy in
+/// a pvtSolid is the same and costs nothing more.
 PVT_API pvtStatus pvtSuggestSmallestHole(pvtContext* context, const pvtSolidOptions* options,
                                          const pvtBitGrid* surface, double* smallestHole);
 
