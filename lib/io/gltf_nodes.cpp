@@ -6,6 +6,7 @@
 #include "builder.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace pvt
 {
@@ -226,7 +227,70 @@ class Walker
             ++skinned_;
             transform = GetBindTransform(static_cast<std::size_t>(node.skin));
         }
-        instances_.push_back({name, mesh, transform});
+        const Json* instancing =
+            FindExtension(file_.document["nodes"][index], "EXT_mesh_gpu_instancing");
+        if (instancing == nullptr) {
+            instances_.push_back({name, mesh, transform});
+        } else {
+            AddCopies({name, mesh, transform}, (*instancing)["attributes"],
+                      "nodes[" + std::to_string(index) + "].extensions.EXT_mesh_gpu_instancing");
+        }
+    }
+
+    // EXT_mesh_gpu_instancing: one instance for each element of its accessors, all of one count.
+    void AddCopies(const GltfInstance& instance, const Json& attributes, const std::string& place)
+    {
+        const Attribute translation = FindAttribute(attributes, "TRANSLATION", TINYGLTF_TYPE_VEC3);
+        const Attribute rotation = FindAttribute(attributes, "ROTATION", TINYGLTF_TYPE_VEC4);
+        const Attribute scale = FindAttribute(attributes, "SCALE", TINYGLTF_TYPE_VEC3);
+        std::size_t count = 0;
+        for (const Attribute* attribute : {&translation, &rotation, &scale}) {
+            if (*attribute && count != 0 && (*attribute)->Count() != count) {
+                Refuse(file_.job, "%s: its attributes have %zu and %zu elements", place.c_str(),
+                       count, (*attribute)->Count());
+            }
+            count = *attribute ? (*attribute)->Count() : count;
+        }
+        const std::string purpose = std::string(file_.job.path) + ": " + place;
+        Check(pvtCheckMemory(file_.job.context, count * sizeof(GltfInstance), purpose.c_str()));
+        instances_.reserve(instances_.size() + count);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (i % kPollNodes == 0) {
+                Poll(file_.job.context);
+            }
+            double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+            GetElement(translation, i, 3, t);
+            GetElement(rotation, i, 4, q);
+            GetElement(scale, i, 3, s);
+            instances_.push_back(
+                {instance.name, instance.mesh, Multiply(instance.transform, Compose(t, q, s))});
+        }
+    }
+
+    using Attribute = std::optional<GltfAccessor>;
+
+    Attribute FindAttribute(const Json& attributes, const char* name, int type) const
+    {
+        const auto found = attributes.find(name);
+        if (found == attributes.end()) {
+            return {};
+        }
+        GltfAccessor accessor(file_, found->get<std::size_t>());
+        const bool isFloat = accessor.ComponentType() == TINYGLTF_COMPONENT_TYPE_FLOAT;
+        const bool isFraction = accessor.IsNormalized() && type == TINYGLTF_TYPE_VEC4;
+        if (!accessor.Is(type) || !(isFloat || isFraction)) {
+            Refuse(file_.job, "EXT_mesh_gpu_instancing: %s is a %s", name,
+                   accessor.Describe().c_str());
+        }
+        return accessor;
+    }
+
+    static void GetElement(const Attribute& attribute, std::size_t element, std::size_t count,
+                           double* out)
+    {
+        for (std::size_t k = 0; attribute && k < count; ++k) {
+            out[k] = attribute->GetNumber(element, k);
+        }
     }
 
     // A skinned mesh ignores its node's transform. In the bind pose all joints move it alike, as

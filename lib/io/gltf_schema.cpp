@@ -343,14 +343,14 @@ class Checker
     const Json& document_;
 };
 
-// What changes how things look, not where they are, may be required by a file.
+// What is implemented here, and what changes how things look but not where they are.
 bool IsKnownExtension(const std::string& name)
 {
     static const char* const known[] = {
-        "KHR_mesh_quantization", "KHR_texture_transform", "KHR_texture_basisu",
-        "KHR_lights_punctual",   "KHR_xmp_json_ld",       "KHR_animation_pointer",
-        "EXT_texture_webp",      "EXT_texture_avif",      "EXT_lights_image_based",
-        "MSFT_texture_dds",
+        "KHR_mesh_quantization", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
+        "KHR_texture_transform", "KHR_texture_basisu",      "KHR_lights_punctual",
+        "KHR_xmp_json_ld",       "KHR_animation_pointer",   "EXT_texture_webp",
+        "EXT_texture_avif",      "EXT_lights_image_based",  "MSFT_texture_dds",
     };
     for (const char* each : known) {
         if (name == each) {

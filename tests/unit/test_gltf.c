@@ -2,6 +2,8 @@
 // glTF as it may be: node trees, index widths, modes, sparse and quantized accessors, scenes.
 #include "gltf_fixture.h"
 
+#include <meshoptimizer.h>
+
 static void a_glb_gives_the_cube_that_it_holds(void** state)
 {
     Fixture* f = *state;
@@ -434,6 +436,112 @@ static void integers_written_as_fractions_are_read(void** state)
     assert_int_equal(f->model.mesh.triangleCount, 12);
 }
 
+static void copies_by_extension_are_instances(void** state)
+{
+    Fixture* f = *state;
+    Pack pack = PackCube();
+    const float places[3][3] = {{0, 0, 0}, {10, 0, 0}, {0, 20, 0}};
+    const int8_t turns[3][4] = {{0, 0, 0, 127}, {0, 0, 127, 0}, {0, 0, 0, 127}}; // half a turn
+    const float scales[3][3] = {{1, 1, 1}, {1, 1, 1}, {-2, 1, 1}};
+    PackBytes(&pack, places, sizeof places);
+    PackBytes(&pack, turns, sizeof turns);
+    PackBytes(&pack, scales, sizeof scales);
+    char json[2048];
+    const char* format =
+        "{" ASSET "'extensionsRequired':['EXT_mesh_gpu_instancing'],'buffers':[{'byteLength':252}],"
+        "'bufferViews':[{'buffer':0,'byteLength':96},{'buffer':0,'byteOffset':96,'byteLength':72},"
+        "{'buffer':0,'byteOffset':168,'byteLength':36},{'buffer':0,'byteOffset':204,'byteLength':"
+        "12},{'buffer':0,'byteOffset':216,'byteLength':36}],'accessors':[{'bufferView':0,"
+        "'componentType':5126,'count':8,'type':'VEC3'},{'bufferView':1,'componentType':5123,"
+        "'count':36,'type':'SCALAR'},{'bufferView':2,'componentType':5126,'count':3,'type':'VEC3'},"
+        "{'bufferView':3,'componentType':5120,'normalized':true,'count':%d,'type':'VEC4'},"
+        "{'bufferView':4,'componentType':5126,'count':3,'type':'VEC3'}]," CUBE_MESH
+        ",'nodes':[{'translation':[0,0,7],'mesh':0,'extensions':{'EXT_mesh_gpu_instancing':"
+        "{'attributes':{'TRANSLATION':2,'ROTATION':3,'SCALE':4,'_ID':0}}}}]}";
+    (void)snprintf(json, sizeof json, format, 3);
+    CHECK_OK(f->context, LoadGlb(f, json, &pack));
+    assert_int_equal(f->model.partCount, 3);
+    assert_int_equal(f->model.parts[2].meshIndex, 0);
+    CheckBounds(&f->model.mesh, (pvtVec3){-2, -1, 7}, (pvtVec3){10, 21, 8}, 1e-12);
+    CheckNear(GetSignedVolume(&f->model.mesh), 4.0, 1e-9);
+    (void)snprintf(json, sizeof json, format, 2);
+    CheckRefused(f, LoadGlb(f, json, &pack), PVT_INVALID_INPUT, "3 and 2 elements");
+}
+
+static void compressed_views_hold_what_was_packed(void** state)
+{
+    Fixture* f = *state;
+    Pack pack = {.size = 0};
+    uint32_t indices[36];
+    for (int i = 0; i < 36; ++i) {
+        indices[i] = kCubeIndices[i];
+    }
+    uint8_t packed[1024];
+    const size_t vertexSize =
+        meshopt_encodeVertexBuffer(packed, sizeof packed, kCubePositions, 8, 12);
+    PackBytes(&pack, packed, vertexSize);
+    const size_t indexSize = meshopt_encodeIndexBuffer(packed, sizeof packed, indices, 36);
+    PackBytes(&pack, packed, indexSize);
+    assert_true(vertexSize > 0 && indexSize > 0);
+    char json[2048];
+    // The second buffer is what readers without the extension would fall back to, and is not there.
+    (void)snprintf(
+        json, sizeof json,
+        "{" ASSET "'extensionsRequired':['EXT_meshopt_compression'],'buffers':[{'byteLength':%zu},"
+        "{'byteLength':168,'extensions':{'EXT_meshopt_compression':{'fallback':true}}}],"
+        "'bufferViews':[{'buffer':1,'byteLength':96,'extensions':{'EXT_meshopt_compression':"
+        "{'buffer':0,'byteLength':%zu,'byteStride':12,'count':8,'mode':'ATTRIBUTES'}}},"
+        "{'buffer':1,'byteOffset':96,'byteLength':72,'extensions':{'EXT_meshopt_compression':"
+        "{'buffer':0,'byteOffset':%zu,'byteLength':%zu,'byteStride':2,'count':36,"
+        "'mode':'TRIANGLES'}}}]," CUBE_ACCESSORS CUBE_MESH ",'nodes':[{'mesh':0}]}",
+        pack.size, vertexSize, vertexSize, indexSize);
+    CHECK_OK(f->context, LoadGlb(f, json, &pack));
+    assert_int_equal(f->model.mesh.triangleCount, 12);
+    CheckBounds(&f->model.mesh, (pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, 0.0);
+    CheckNear(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    // Damaged anywhere: refused, or another cube, but never anything worse.
+    const Pack whole = pack;
+    for (size_t i = 0; i < whole.size; ++i) {
+        pack.bytes[i] ^= 0x55;
+        const pvtStatus status = LoadGlb(f, json, &pack);
+        assert_true(status == PVT_OK || status == PVT_INVALID_INPUT);
+        pack = whole;
+    }
+}
+
+// What the extension says is held against what a view of that kind can be.
+static void compressed_views_are_checked_before_they_are_decoded(void** state)
+{
+    Fixture* f = *state;
+    const struct {
+        const char* extension;
+        const char* reason;
+    } cases[] = {
+        {"'byteLength':40,'byteStride':12,'count':8,'mode':'ATTRIBUTES'", "damaged"},
+        {"'byteLength':40,'byteStride':12,'count':9,'mode':'ATTRIBUTES'", "9 elements of 12"},
+        {"'byteLength':40,'byteStride':6,'count':16,'mode':'ATTRIBUTES'", "do not fit mode"},
+        {"'byteLength':40,'byteStride':12,'count':8,'mode':'TRIANGLES'", "do not fit mode"},
+        {"'byteLength':40,'byteStride':12,'count':8,'mode':'ATTRIBUTES','filter':'QUATERNION'",
+         "do not fit mode"},
+        {"'byteLength':40,'byteStride':12,'count':8,'mode':'SQUEEZED'", "mode is \"SQUEEZED\""},
+        {"'byteLength':400,'byteStride':12,'count':8,'mode':'ATTRIBUTES'", "reaches from byte"},
+        {"'byteStride':12,'count':8,'mode':'ATTRIBUTES'", "byteLength is missing"},
+    };
+    const Pack cube = PackCube();
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char json[2048];
+        (void)snprintf(json, sizeof json,
+                       "{" ASSET "'extensionsRequired':['EXT_meshopt_compression'],'buffers':["
+                       "{'byteLength':168},{'byteLength':96}],'bufferViews':[{'buffer':1,"
+                       "'byteLength':96,'extensions':{'EXT_meshopt_compression':{'buffer':0,%s}}},"
+                       "{'buffer':0,'byteOffset':96,'byteLength':72}]," CUBE_ACCESSORS CUBE_MESH
+                       ",'nodes':[{'mesh':0}]}",
+                       cases[i].extension);
+        CheckRefused(f, LoadGlb(f, json, &cube), PVT_INVALID_INPUT, cases[i].reason);
+        CheckMessage(f->context, "bufferViews[0].extensions.EXT_meshopt_compression");
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -456,6 +564,9 @@ int main(void)
         TEST(materials_that_let_light_through_are_left_out),
         TEST(skins_and_morphs_give_the_bind_pose_with_a_warning),
         TEST(integers_written_as_fractions_are_read),
+        TEST(copies_by_extension_are_instances),
+        TEST(compressed_views_hold_what_was_packed),
+        TEST(compressed_views_are_checked_before_they_are_decoded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
