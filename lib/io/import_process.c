@@ -233,6 +233,9 @@ static pvtStatus RunProgram(const pvtLoadJob* job, const char* program, pvtImpor
 pvtStatus pvtRunImporter(const pvtLoadJob* job, pvtImportResult* result)
 {
     *result = (pvtImportResult){0};
+    if (pvtIsCancelled(job->context)) {
+        return pvtFailCancelled(job->context);
+    }
     pvtCompanionSearch search = {.file = kProgram};
     while (pvtFindCompanion(&search)) {
         if (access(search.path, X_OK) == 0) {
