@@ -35,7 +35,7 @@ pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* opti
         status = pvtCreateScoredMasks(context, &arrangement->scorer, &arrangement->covered);
     }
     if (status == PVT_OK) {
-        const size_t words = arrangement->scorer.viewCount * arrangement->scorer.wordCount;
+        const size_t words = arrangement->scorer.maskCount * arrangement->scorer.wordCount;
         arrangement->panels = pvtAllocate(context, (size_t)capacity, sizeof *arrangement->panels);
         arrangement->layers = pvtAllocate(context, LAYERS * words, sizeof(uint64_t));
         if (arrangement->panels == NULL || arrangement->layers == NULL) {
@@ -66,45 +66,41 @@ pvtStatus pvtSliceAllowed(pvtContext* context, const pvtArrangement* arrangement
     return PVT_OK;
 }
 
-static void DrawPanel(const pvtArrangement* arrangement, size_t view, const pvtPanel* panel,
+static void DrawPanel(const pvtArrangement* arrangement, size_t mask, const pvtPanel* panel,
                       uint64_t* rows)
 {
-    const pvtScorer* scorer = &arrangement->scorer;
-    memset(rows, 0, scorer->wordCount * sizeof *rows);
-    if (panel->count >= 3) {
-        const pvtPlaneProjection projection = pvtProjectPlane(scorer, view, &panel->plane);
-        pvtDrawSectionPolygon(scorer, &projection, panel->points, (size_t)panel->count, rows);
-    }
+    memset(rows, 0, arrangement->scorer.wordCount * sizeof *rows);
+    pvtDrawSectionPolygon(&arrangement->scorer, mask, &panel->plane, panel->points,
+                          (size_t)panel->count, rows);
 }
 
-static const uint64_t* GetLayers(const pvtArrangement* arrangement, size_t view)
+static const uint64_t* GetLayers(const pvtArrangement* arrangement, size_t mask)
 {
-    return arrangement->layers + LAYERS * view * arrangement->scorer.wordCount;
+    return arrangement->layers + LAYERS * mask * arrangement->scorer.wordCount;
 }
 
-// The mask of a view after the change.
-static void ComposeView(const pvtArrangement* arrangement, const pvtChange* change, size_t view,
+// A mask after the change.
+static void ComposeMask(const pvtArrangement* arrangement, const pvtChange* change, size_t mask,
                         uint64_t* rows)
 {
     const size_t words = arrangement->scorer.wordCount;
-    const uint64_t* once = GetLayers(arrangement, view);
+    const uint64_t* once = GetLayers(arrangement, mask);
     const uint64_t* twice = once + words;
     const uint64_t* thrice = twice + words;
     const uint64_t* first = arrangement->panels[change->slots[0]].masks;
-    first = first != NULL ? first + view * words : NULL;
+    first = first != NULL ? first + mask * words : NULL;
     const uint64_t* second = change->count > 1 ? arrangement->panels[change->slots[1]].masks : NULL;
-    second = second != NULL ? second + view * words : NULL;
+    second = second != NULL ? second + mask * words : NULL;
     uint64_t drawn[2][MAX_WORDS];
     for (int i = 0; i < change->count; ++i) {
-        DrawPanel(arrangement, view, &change->panels[i], drawn[i]);
+        DrawPanel(arrangement, mask, &change->panels[i], drawn[i]);
     }
     for (size_t w = 0; w < words; ++w) {
         const uint64_t p = first != NULL ? first[w] : 0;
         const uint64_t q = second != NULL ? second[w] : 0;
         // What the others cover: once more than the replaced panels do.
-        uint64_t mask = (~p & ~q & once[w]) | ((p ^ q) & twice[w]) | (p & q & thrice[w]);
-        mask |= drawn[0][w] | (change->count > 1 ? drawn[1][w] : 0);
-        rows[w] = mask;
+        rows[w] = (~p & ~q & once[w]) | ((p ^ q) & twice[w]) | (p & q & thrice[w]);
+        rows[w] |= drawn[0][w] | (change->count > 1 ? drawn[1][w] : 0);
     }
 }
 
@@ -112,19 +108,18 @@ void pvtEvaluateChange(const pvtArrangement* arrangement, pvtChange* change)
 {
     const pvtScorer* scorer = &arrangement->scorer;
     double value = 0.0;
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
         uint64_t rows[MAX_WORDS];
-        ComposeView(arrangement, change, v, rows);
-        value +=
-            scorer->factors[v] * (double)pvtScoreRows(scorer, &arrangement->covered.masks[v], rows);
+        ComposeMask(arrangement, change, m, rows);
+        value += pvtScoreRows(scorer, &arrangement->covered, m, rows);
     }
     change->value = value;
 }
 
-static void CountLayers(pvtArrangement* arrangement, size_t view)
+static void CountLayers(pvtArrangement* arrangement, size_t mask)
 {
     const size_t words = arrangement->scorer.wordCount;
-    uint64_t* once = arrangement->layers + LAYERS * view * words;
+    uint64_t* once = arrangement->layers + LAYERS * mask * words;
     uint64_t* twice = once + words;
     uint64_t* thrice = twice + words;
     memset(once, 0, LAYERS * words * sizeof *once);
@@ -132,11 +127,11 @@ static void CountLayers(pvtArrangement* arrangement, size_t view)
         if (arrangement->panels[slot].panel.count == 0) {
             continue;
         }
-        const uint64_t* mask = arrangement->panels[slot].masks + view * words;
+        const uint64_t* rows = arrangement->panels[slot].masks + mask * words;
         for (size_t w = 0; w < words; ++w) {
-            thrice[w] |= twice[w] & mask[w];
-            twice[w] |= once[w] & mask[w];
-            once[w] |= mask[w];
+            thrice[w] |= twice[w] & rows[w];
+            twice[w] |= once[w] & rows[w];
+            once[w] |= rows[w];
         }
     }
 }
@@ -154,7 +149,7 @@ static pvtStatus PlacePanel(pvtContext* context, pvtArrangement* arrangement, in
     const pvtScorer* scorer = &arrangement->scorer;
     if (placed->masks == NULL) {
         placed->masks =
-            pvtAllocate(context, scorer->viewCount * scorer->wordCount, sizeof *placed->masks);
+            pvtAllocate(context, scorer->maskCount * scorer->wordCount, sizeof *placed->masks);
         if (placed->masks == NULL) {
             return pvtContext_GetStatus(context);
         }
@@ -172,8 +167,8 @@ static pvtStatus PlacePanel(pvtContext* context, pvtArrangement* arrangement, in
     const int after = panel->count > 0 ? panel->count - 2 : 0;
     arrangement->triangles += after - before;
     placed->panel = *panel;
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
-        DrawPanel(arrangement, v, panel, placed->masks + v * scorer->wordCount);
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
+        DrawPanel(arrangement, m, panel, placed->masks + m * scorer->wordCount);
     }
     return PVT_OK;
 }
@@ -189,14 +184,14 @@ pvtStatus pvtApplyChange(pvtContext* context, pvtArrangement* arrangement, const
     }
     const pvtScorer* scorer = &arrangement->scorer;
     arrangement->value = 0.0;
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
-        CountLayers(arrangement, v);
-        pvtScoredMask* covered = &arrangement->covered.masks[v];
-        const uint64_t* once = GetLayers(arrangement, v);
-        if (memcmp(once, covered->rows, scorer->wordCount * sizeof *once) != 0) {
-            pvtScoredMask_Assign(scorer, covered, once);
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
+        CountLayers(arrangement, m);
+        const uint64_t* once = GetLayers(arrangement, m);
+        if (memcmp(once, arrangement->covered.masks[m].rows, scorer->wordCount * sizeof *once) !=
+            0) {
+            pvtAssignRows(scorer, &arrangement->covered, m, once);
         }
-        arrangement->value += scorer->factors[v] * (double)covered->sum;
+        arrangement->value += arrangement->covered.masks[m].value;
     }
     return PVT_OK;
 }

@@ -19,7 +19,7 @@ typedef struct pvtPanel {
 /// A panel in its place, with what it hides.
 typedef struct pvtPlacedPanel {
     pvtPanel panel;
-    uint64_t* masks; ///< wordCount words a view
+    uint64_t* masks; ///< wordCount words a mask of the scorer
     pvtBitmap cells; ///< where its plane is allowed
 } pvtPlacedPanel;
 
@@ -30,7 +30,7 @@ typedef struct pvtArrangement {
     pvtPlacedPanel* panels; ///< capacity; those with a count of 0 are free
     int capacity;
     int triangles;    ///< in all panels
-    uint64_t* layers; ///< three a view: pixels covered at least once, twice, three times
+    uint64_t* layers; ///< three a mask: pixels covered at least once, twice, three times
     pvtScoredMaskSet covered;
     double value; ///< Σ factor × sum
 } pvtArrangement;

@@ -45,17 +45,16 @@ static pvtStatus CollectWhole(pvtContext* context, Reduction* reduction)
     return PVT_OK;
 }
 
-// The view's mask with the candidate's whole polygon added.
-static void DrawWhole(const Reduction* reduction, size_t candidate, size_t view, uint64_t* rows)
+// The mask with the candidate's whole polygon added.
+static void DrawWhole(const Reduction* reduction, size_t candidate, size_t mask, uint64_t* rows)
 {
     const pvtScorer* scorer = &reduction->scorer;
     const size_t first = reduction->starts[candidate];
-    const pvtPlaneProjection projection =
-        pvtProjectPlane(scorer, view, &reduction->candidates->planes[candidate]);
+    const size_t count = reduction->starts[candidate + 1] - first;
     memset(rows, 0, scorer->wordCount * sizeof *rows);
-    pvtDrawSectionPolygon(scorer, &projection, reduction->points + first,
-                          reduction->starts[candidate + 1] - first, rows);
-    const uint64_t* covered = reduction->covered.masks[view].rows;
+    pvtDrawSectionPolygon(scorer, mask, &reduction->candidates->planes[candidate],
+                          reduction->points + first, count, rows);
+    const uint64_t* covered = reduction->covered.masks[mask].rows;
     for (size_t word = 0; word < scorer->wordCount; ++word) {
         rows[word] |= covered[word];
     }
@@ -68,12 +67,11 @@ static void EvaluateGains(size_t begin, size_t end, int worker, void* taskData)
     const pvtScorer* scorer = &reduction->scorer;
     for (size_t c = begin; c < end && !pvtIsCancelled(reduction->context); ++c) {
         double gain = 0.0;
-        for (size_t v = 0; v < scorer->viewCount && reduction->cut->triangles[c] == 0; ++v) {
+        for (size_t m = 0; m < scorer->maskCount && reduction->cut->triangles[c] == 0; ++m) {
             uint64_t rows[MAX_WORDS];
-            DrawWhole(reduction, c, v, rows);
-            const pvtScoredMask* covered = &reduction->covered.masks[v];
-            const double before = (double)covered->sum;
-            gain += scorer->factors[v] * ((double)pvtScoreRows(scorer, covered, rows) - before);
+            DrawWhole(reduction, c, m, rows);
+            gain += pvtScoreRows(scorer, &reduction->covered, m, rows) -
+                    reduction->covered.masks[m].value;
         }
         reduction->gains[c] = gain;
     }
@@ -84,8 +82,8 @@ static bool AddBest(Reduction* reduction, double completion, pvtCut* cut)
 {
     const pvtScorer* scorer = &reduction->scorer;
     double present = 0.0;
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
-        present += scorer->factors[v] * (double)reduction->covered.masks[v].sum;
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
+        present += reduction->covered.masks[m].value;
     }
     size_t best = 0;
     for (size_t c = 1; c < cut->count; ++c) {
@@ -95,10 +93,10 @@ static bool AddBest(Reduction* reduction, double completion, pvtCut* cut)
         return false;
     }
     cut->triangles[best] = reduction->candidates->triangles[best];
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
         uint64_t rows[MAX_WORDS];
-        DrawWhole(reduction, best, v, rows);
-        pvtScoredMask_Assign(scorer, &reduction->covered.masks[v], rows);
+        DrawWhole(reduction, best, m, rows);
+        pvtAssignRows(scorer, &reduction->covered, m, rows);
     }
     return true;
 }

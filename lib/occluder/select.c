@@ -63,6 +63,19 @@ static int ListLevels(int32_t present, int32_t most, int32_t levels[MAX_LEVELS])
     return count;
 }
 
+// The mask with one more polygon drawn over what is covered.
+static void CoverMask(const Selection* selection, size_t mask, const pvtPlane* plane,
+                      const pvtPoint2* points, size_t count, uint64_t* rows)
+{
+    const pvtScorer* scorer = &selection->scorer;
+    const uint64_t* covered = selection->covered.masks[mask].rows;
+    memset(rows, 0, scorer->wordCount * sizeof *rows);
+    pvtDrawSectionPolygon(scorer, mask, plane, points, count, rows);
+    for (size_t word = 0; word < scorer->wordCount; ++word) {
+        rows[word] |= covered[word];
+    }
+}
+
 static double GetGain(const Selection* selection, size_t candidate, int32_t level)
 {
     const pvtScorer* scorer = &selection->scorer;
@@ -71,17 +84,11 @@ static double GetGain(const Selection* selection, size_t candidate, int32_t leve
     const size_t count =
         pvtChainSet_GetLink(&selection->candidates->chains, candidate, level, points);
     double gain = 0.0;
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
         uint64_t rows[MAX_WORDS];
-        const pvtScoredMask* covered = &selection->covered.masks[v];
-        const pvtPlaneProjection projection = pvtProjectPlane(scorer, v, plane);
-        memset(rows, 0, scorer->wordCount * sizeof *rows);
-        pvtDrawSectionPolygon(scorer, &projection, points, count, rows);
-        for (size_t word = 0; word < scorer->wordCount; ++word) {
-            rows[word] |= covered->rows[word];
-        }
-        const uint64_t sum = pvtScoreRows(scorer, covered, rows);
-        gain += scorer->factors[v] * ((double)sum - (double)covered->sum);
+        CoverMask(selection, m, plane, points, count, rows);
+        gain +=
+            pvtScoreRows(scorer, &selection->covered, m, rows) - selection->covered.masks[m].value;
     }
     return gain;
 }
@@ -143,17 +150,10 @@ static void Accept(Selection* selection, size_t candidate)
     pvtPoint2 points[256];
     const size_t count =
         pvtChainSet_GetLink(&selection->candidates->chains, candidate, offer->level, points);
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
         uint64_t rows[MAX_WORDS];
-        pvtScoredMask* covered = &selection->covered.masks[v];
-        const pvtPlaneProjection projection =
-            pvtProjectPlane(scorer, v, &selection->candidates->planes[candidate]);
-        memset(rows, 0, scorer->wordCount * sizeof *rows);
-        pvtDrawSectionPolygon(scorer, &projection, points, count, rows);
-        for (size_t word = 0; word < scorer->wordCount; ++word) {
-            rows[word] |= covered->rows[word];
-        }
-        pvtScoredMask_Assign(scorer, covered, rows);
+        CoverMask(selection, m, &selection->candidates->planes[candidate], points, count, rows);
+        pvtAssignRows(scorer, &selection->covered, m, rows);
     }
     // The best chain may have more to offer; all others know only what they would have gained
     // before.
@@ -241,7 +241,7 @@ pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options
                            .cut = cut,
                            .left = options->budget};
     const pvtScorerOptions scorer = {
-        .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1};
+        .views = options->views, .bounds = options->bounds, .size = 31, .exponent = 1};
     pvtStatus status = pvtCreateScorer(context, &scorer, &candidates->frame, &selection.scorer);
     if (status == PVT_OK) {
         status = pvtCreateScoredMasks(context, &selection.scorer, &selection.covered);

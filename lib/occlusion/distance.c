@@ -13,8 +13,7 @@
 #include <string.h>
 
 enum {
-    BLOCK = 32,                  // pixels relaxed together
-    PAD = PVT_MAX_MASK_SIZE / 2, // the farthest that a clear pixel can be
+    BLOCK = 32, // pixels relaxed together
 };
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
@@ -97,13 +96,6 @@ void pvtTransformMaskColumns(const uint64_t* rows, int size, uint8_t* columns)
     }
 }
 
-// Squares with free space around them, so that x ± dx needs no test: outside is clear, hence 0.
-typedef struct SquareRow {
-    int16_t before[PAD];
-    int16_t values[PVT_MAX_MASK_SIZE];
-    int16_t after[PAD];
-} SquareRow;
-
 VECTOR_CLONES
 static void RelaxBlock(const int16_t* squares, int16_t* restrict block)
 {
@@ -131,40 +123,45 @@ static void RelaxBlock(const int16_t* squares, int16_t* restrict block)
     }
 }
 
-static void TransformRow(const uint8_t* columnRow, int size, int16_t* distances)
+VECTOR_CLONES
+static void SquareRow(const uint8_t* restrict columnRow, int size, int16_t* restrict squares)
 {
-    SquareRow squares;
-    memset(&squares, 0, sizeof squares);
     for (int x = 0; x < size; ++x) {
-        squares.values[x] = (int16_t)(columnRow[x] * columnRow[x]);
-    }
-    // From the start of the struct, so that neighbours in `before` and `after` are within one
-    // array.
-    const int16_t* values = (const int16_t*)&squares + PAD;
-    if (size < PVT_MAX_MASK_SIZE) {
-        memset(squares.values + size, 0, (size_t)(PVT_MAX_MASK_SIZE - size) * sizeof(int16_t));
-    }
-    for (int x = 0; x < size; x += BLOCK) {
-        RelaxBlock(values + x, distances + x);
+        squares[x] = (int16_t)(columnRow[x] * columnRow[x]);
     }
 }
 
-static uint64_t SumTable(const int16_t* distances, int size, const uint32_t* table)
+// Squared distances of a row. The squares lie between free space as wide as the farthest clear
+// pixel, so that x ± dx needs no test: outside is clear, hence 0.
+static void TransformRow(const uint8_t* columnRow, int size, int16_t* distances)
+{
+    int16_t squares[2 * PVT_MAX_MASK_SIZE];
+    const int pad = size / 2;
+    memset(squares, 0, (size_t)pad * sizeof *squares);
+    memset(squares + pad + size, 0, (size_t)pad * sizeof *squares);
+    SquareRow(columnRow, size, squares + pad);
+    for (int x = 0; x < size; x += BLOCK) {
+        RelaxBlock(squares + pad + x, distances + x);
+    }
+}
+
+static uint64_t SumTable(const int16_t* distances, int count, const uint32_t* table)
 {
     uint64_t even = 0;
     uint64_t odd = 0;
-    for (int x = 0; x < size; x += 2) {
+    for (int x = 0; x < count; x += 2) {
         even += table[distances[x]];
         odd += table[distances[x + 1]];
     }
     return even + odd;
 }
 
-uint64_t pvtSumMaskRow(const uint8_t* columnRow, int size, const uint32_t* table)
+void pvtSumMaskRow(const uint8_t* columnRow, int size, const uint32_t* table, uint64_t sums[2])
 {
     int16_t distances[PVT_MAX_MASK_SIZE];
     TransformRow(columnRow, size, distances);
-    return SumTable(distances, size, table);
+    sums[0] = SumTable(distances, size / 2, table);
+    sums[1] = SumTable(distances + size / 2, size / 2, table);
 }
 
 uint64_t pvtSumDistances(const uint64_t* rows, int size, const uint32_t* table)
@@ -179,7 +176,9 @@ uint64_t pvtSumDistances(const uint64_t* rows, int size, const uint32_t* table)
             any |= rows[(size_t)y * words + word];
         }
         if (any != 0) {
-            sum += pvtSumMaskRow(columns + (size_t)y * (size_t)size, size, table);
+            uint64_t halves[2];
+            pvtSumMaskRow(columns + (size_t)y * (size_t)size, size, table, halves);
+            sum += halves[0] + halves[1];
         }
     }
     return sum;

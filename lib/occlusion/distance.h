@@ -11,7 +11,8 @@ enum { PVT_MAX_MASK_SIZE = 256 };
 /// row. First half of the transform.
 void pvtTransformMaskColumns(const uint64_t* rows, int size, uint8_t* columns);
 
-/// Second half, for one row of pvtTransformMaskColumns: Σ table[d²].
-uint64_t pvtSumMaskRow(const uint8_t* columnRow, int size, const uint32_t* table);
+/// Second half, for one row of pvtTransformMaskColumns: Σ table[d²] over the left and over the
+/// right half of the row.
+void pvtSumMaskRow(const uint8_t* columnRow, int size, const uint32_t* table, uint64_t sums[2]);
 
 #endif

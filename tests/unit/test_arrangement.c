@@ -48,30 +48,40 @@ static void RollPanel(pvtRandom* random, const pvtGridFrame* frame, pvtPanel* pa
     }
 }
 
-// The value by drawing everything anew.
+// The value by drawing everything anew, each view on its own.
 static double MeasureFromScratch(const pvtArrangement* arrangement)
 {
     const pvtScorer* scorer = &arrangement->scorer;
     double value = 0.0;
-    for (size_t v = 0; v < scorer->viewCount; ++v) {
+    for (size_t m = 0; m < scorer->maskCount; ++m) {
         uint64_t rows[64] = {0};
         for (int slot = 0; slot < arrangement->capacity; ++slot) {
             const pvtPanel* panel = &arrangement->panels[slot].panel;
             uint64_t drawn[64] = {0};
-            const pvtPlaneProjection projection = pvtProjectPlane(scorer, v, &panel->plane);
-            pvtDrawSectionPolygon(scorer, &projection, panel->points, (size_t)panel->count, drawn);
+            pvtDrawSectionPolygon(scorer, m, &panel->plane, panel->points, (size_t)panel->count,
+                                  drawn);
             for (int row = 0; row < 64; ++row) {
                 rows[row] |= drawn[row];
             }
         }
-        value += scorer->factors[v] * (double)pvtSumDistances(rows, 64, scorer->table);
+        const int tiles = scorer->viewsPerMask == 4 ? 2 : 1;
+        double ofMask = 0.0;
+        for (int tile = 0; tile < tiles * tiles; ++tile) {
+            uint64_t own[64] = {0};
+            for (int row = 0; row < 64 / tiles; ++row) {
+                const uint64_t whole = rows[tile / tiles * 32 + row];
+                own[row] = tiles == 1 ? whole : (whole >> (tile % tiles * 32)) & UINT32_MAX;
+            }
+            ofMask += scorer->factors[4 * m + (size_t)tile] *
+                      (double)pvtSumDistances(own, 64, scorer->table);
+        }
+        value += ofMask;
     }
     return value;
 }
 
-static void the_incremental_value_equals_the_full_one_bit_for_bit(void** state)
+static void CheckIncrementalValues(int size)
 {
-    (void)state;
     pvtContext* context = CreateTestContext(1);
     pvtBitGrid grid;
     MakeBall(context, &grid);
@@ -82,7 +92,7 @@ static void the_incremental_value_equals_the_full_one_bit_for_bit(void** state)
     pvtViewSet views;
     CHECK_OK(context, pvtMakeViews(context, &viewOptions, &views));
     const pvtScorerOptions options = {
-        .views = &views, .bounds = {{0, 0, 0}, {12, 12, 12}}, .size = 64, .exponent = 1};
+        .views = &views, .bounds = {{0, 0, 0}, {12, 12, 12}}, .size = size, .exponent = 1};
     pvtArrangement arrangement;
     CHECK_OK(context, pvtCreateArrangement(context, &options, &volume, PANELS, &arrangement));
 
@@ -111,10 +121,23 @@ static void the_incremental_value_equals_the_full_one_bit_for_bit(void** state)
     DestroyTestContext(context);
 }
 
+static void the_incremental_value_equals_the_full_one_bit_for_bit(void** state)
+{
+    (void)state;
+    CheckIncrementalValues(64);
+}
+
+static void so_it_does_with_four_views_on_a_mask(void** state)
+{
+    (void)state;
+    CheckIncrementalValues(31);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_incremental_value_equals_the_full_one_bit_for_bit),
+        cmocka_unit_test(so_it_does_with_four_views_on_a_mask),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
