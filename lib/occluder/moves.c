@@ -114,17 +114,59 @@ static bool PushPoint(const Maker* maker, const pvtBitmap* cells, pvtPanel* pane
     return best.x != here.x || best.y != here.y;
 }
 
+// Moves a point by (dx, dy) and, where that does not fit, back towards the middle of its neighbours
+// until it does: so that it can slide along the border of what is allowed.
+static bool SlidePoint(const Maker* maker, const pvtBitmap* cells, pvtPanel* panel, int index,
+                       const double step[2])
+{
+    const pvtPoint2 here = panel->points[index];
+    const pvtPoint2 before = panel->points[(index + panel->count - 1) % panel->count];
+    const pvtPoint2 after = panel->points[(index + 1) % panel->count];
+    const pvtPoint2 there = OffsetPoint(here, step[0], step[1], 1.0);
+    const double dx = 0.5 * ((double)before.x + after.x) - there.x;
+    const double dy = 0.5 * ((double)before.y + after.y) - there.y;
+    pvtPoint2 best = here;
+    double low = 0.0;
+    double high = 1.0;
+    for (int i = 0; i <= BISECTIONS; ++i) {
+        const double at = i == 0 ? 0.0 : 0.5 * (low + high);
+        const pvtPoint2 place = OffsetPoint(there, dx, dy, at);
+        if (FitsPointAt(maker, cells, panel, index, place)) {
+            best = place;
+            high = at;
+            if (i == 0) {
+                break;
+            }
+        } else {
+            low = at;
+        }
+    }
+    panel->points[index] = best;
+    return best.x != here.x || best.y != here.y;
+}
+
 static bool MovePoint(Maker* maker)
 {
     const int slot = PickSlot(maker, -1);
     if (slot < 0) {
         return false;
     }
+    const pvtBitmap* cells = &maker->arrangement->panels[slot].cells;
     pvtPanel* panel = AddPart(maker, slot);
     const int index = (int)pvtRandom_Below(maker->random, (uint32_t)panel->count);
     const double reach = RollReach(maker);
     const double step[2] = {RollSigned(maker) * reach, RollSigned(maker) * reach};
-    return PushPoint(maker, &maker->arrangement->panels[slot].cells, panel, index, step);
+    const uint32_t way = pvtRandom_Below(maker->random, 4);
+    if (way == 0) {
+        return PushPoint(maker, cells, panel, index, step);
+    }
+    if (way == 1) {
+        // Both ends of an edge.
+        const bool first = SlidePoint(maker, cells, panel, index, step);
+        const bool second = SlidePoint(maker, cells, panel, (index + 1) % panel->count, step);
+        return first || second;
+    }
+    return SlidePoint(maker, cells, panel, index, step);
 }
 
 static bool InsertPoint(Maker* maker, pvtPanel* panel, const pvtBitmap* cells)

@@ -17,8 +17,8 @@
 enum {
     HEAD = 16, // candidates evaluated at once: fixed, so that threads do not matter
     MAX_LEVELS = 24,
-    OPENING = 4, // a first link of a chain is a hexagon: single triangles gain more each, but leave
-                 // so many panels that none can grow later
+    OPENING = 2, // a first link of a chain is a quadrilateral: single triangles gain more each, but
+                 // leave more panels than can grow, and hexagons leave too few
     MAX_WORDS = PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64,
 };
 
@@ -47,7 +47,7 @@ pvtSelectOptions pvtDefaultSelectOptions(void)
     return (pvtSelectOptions){.budget = 64, .completion = 0.01};
 }
 
-// The levels worth trying above `present`: a hexagon first, all of the next few, then ever fewer.
+// The levels worth trying above `present`: two triangles first, all of the next few, then ever fewer.
 static int ListLevels(int32_t present, int32_t most, int32_t levels[MAX_LEVELS])
 {
     int count = 0;
