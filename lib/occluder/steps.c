@@ -13,7 +13,6 @@ enum {
     MAX_RESOLUTION = 2048,
     MEASURE_SIZE = 64,
     SELECT_VIEWS = 24,
-    REFINE_TRIALS = 20000,
     MAX_REFINED = 512, // triangles: beyond, panels are so many that single moves hardly count
 };
 
@@ -26,6 +25,7 @@ pvtBuildOptions pvtDefaultBuildOptions(void)
                              .up = PVT_AXIS_Y,
                              .enclosed = -1,
                              .method = PVT_METHOD_PLANAR,
+                             .effort = PVT_EFFORT_DEFAULT,
                              .views = pvtDefaultViewOptions(),
                              .seed = 1};
 }
@@ -139,7 +139,7 @@ pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build)
 {
     pvtVoxelizeOptions options = pvtDefaultVoxelizeOptions();
     options.voxelSize = build->stats.voxelSize;
-    options.padding = fmax(build->stats.smallestHole, build->stats.tolerance);
+    options.padding = build->stats.tolerance;
     return pvtVoxelizeMesh(context, &options, build->mesh, &build->surface);
 }
 
@@ -177,20 +177,34 @@ static bool FindBounds(const pvtBitGrid* grid, pvtBox3* bounds)
 
 static pvtStatus FailNothingInside(pvtContext* context, const pvtBuild* build)
 {
-    const double hole = build->stats.suggestedHole;
-    if (hole > 0.0) {
+    const pvtRemedy* remedy = &build->solid.remedy;
+    const int resolution = build->stats.resolution;
+    if (remedy->terrain) {
+        return pvtFail(
+            context, PVT_NOTHING_INSIDE,
+            "nothing is inside at %d voxels, but the mesh looks like a landscape; --terrain "
+            "fills what lies below it",
+            resolution);
+    }
+    if (remedy->ground) {
+        return pvtFail(context, PVT_NOTHING_INSIDE,
+                       "nothing is inside at %d voxels, but the mesh is open at the bottom only; "
+                       "--ground closes it",
+                       resolution);
+    }
+    if (remedy->smallestHole > 0.0) {
         return pvtFail(
             context, PVT_NOTHING_INSIDE,
             "the mesh has openings, so that nothing is inside at %d voxels; --smallest-hole "
             "%.3g would close them",
-            build->stats.resolution, hole);
+            resolution, remedy->smallestHole);
     }
     return pvtFail(
         context, PVT_NOTHING_INSIDE,
         "the mesh has no inside at %d voxels; a higher --resolution finds thinner solids, "
         "--smallest-hole D closes openings narrower than D, --ground closes the bottom, "
         "--terrain fills below a landscape, --tolerance 1vx counts the touched voxels too",
-        build->stats.resolution);
+        resolution);
 }
 
 pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
@@ -346,11 +360,13 @@ pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
     if (IsPaper(build) || build->options->budget > MAX_REFINED) {
         return PVT_OK;
     }
+    static const int trials[] = {
+        [PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000};
     const pvtRefineOptions options = {.budget = build->options->budget,
                                       .views = &build->views,
                                       .bounds = build->bounds,
                                       .seed = build->options->seed,
-                                      .trials = REFINE_TRIALS};
+                                      .trials = trials[build->options->effort]};
     return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
                              &build->occluder);
 }

@@ -100,6 +100,9 @@ PVT_API pvtStatus pvtTakeCut(pvtContext* context, const pvtCandidateSet* candida
 PVT_API pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed,
                                    const pvtMesh* occluder, uint64_t* outside);
 
+/// How long the refinement may go on: it tries 1,500, 20,000 or 200,000 changes.
+typedef enum pvtEffort { PVT_EFFORT_FAST, PVT_EFFORT_DEFAULT, PVT_EFFORT_BEST } pvtEffort;
+
 typedef struct pvtBuildOptions {
     int budget;             ///< 1 to 65535 triangles; default 64
     int resolution;         ///< [vx] 8 to 2048 along the longest side; default 256
@@ -110,6 +113,7 @@ typedef struct pvtBuildOptions {
     pvtAxis up;             ///< default y
     int enclosed;           ///< see pvtSolidOptions; default −1
     pvtMethod method;       ///< default PVT_METHOD_PLANAR
+    pvtEffort effort;       ///< default PVT_EFFORT_DEFAULT; the paper's way takes no notice of it
     pvtViewOptions views;   ///< what to optimise for; `up` follows the field above
     uint64_t seed;          ///< default 1
     /// Null: slices are made on the CPU. Else called once the voxel mesh is there, to make the

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#include "check.h"
+
+#include "base/context.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <paravent/occluder.h>
+#include <string.h>
+
+// A box with two triangles a side, wound outwards.
+static void MakeBox(pvtContext* context, pvtVec3 lower, pvtVec3 upper, pvtMesh* mesh)
+{
+    pvtVec3 corners[8];
+    for (int i = 0; i < 8; ++i) {
+        corners[i] = (pvtVec3){i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y,
+                               i & 4 ? upper.z : lower.z};
+    }
+    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    uint32_t indices[36];
+    for (int q = 0; q < 6; ++q) {
+        const uint32_t* c = quads[q];
+        const uint32_t two[6] = {c[0], c[1], c[2], c[0], c[2], c[3]};
+        memcpy(indices + 6 * q, two, sizeof two);
+    }
+    CHECK_OK(context, pvtCreateMesh(context, corners, 8, indices, 12, mesh));
+}
+
+// A ring that lies flat: 24 by 12 quads.
+static void MakeTorus(pvtContext* context, pvtMesh* mesh)
+{
+    enum { AROUND = 24, ACROSS = 12 };
+    pvtVec3 positions[AROUND * ACROSS];
+    uint32_t indices[6 * AROUND * ACROSS];
+    size_t count = 0;
+    for (uint32_t i = 0; i < AROUND; ++i) {
+        for (uint32_t j = 0; j < ACROSS; ++j) {
+            const double a = 6.283185307179586 * i / AROUND;
+            const double b = 6.283185307179586 * j / ACROSS;
+            const double radius = 2.0 + 0.8 * cos(b);
+            positions[i * ACROSS + j] = (pvtVec3){radius * cos(a), 0.8 * sin(b), radius * sin(a)};
+            const uint32_t nextI = (i + 1) % AROUND * ACROSS;
+            const uint32_t quad[4] = {i * ACROSS + j, nextI + j, nextI + (j + 1) % ACROSS,
+                                      i * ACROSS + (j + 1) % ACROSS};
+            const uint32_t two[6] = {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]};
+            memcpy(indices + count, two, sizeof two);
+            count += 6;
+        }
+    }
+    CHECK_OK(context, pvtCreateMesh(context, positions, AROUND * ACROSS, indices,
+                                    2 * AROUND * ACROSS, mesh));
+}
+
+static pvtBuildOptions GetQuickOptions(void)
+{
+    pvtBuildOptions options = pvtDefaultBuildOptions();
+    options.resolution = 32;
+    options.views.count = 8;
+    options.effort = PVT_EFFORT_FAST;
+    return options;
+}
+
+static void a_cube_at_twelve_triangles_is_covered_but_for_two_voxels(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtMesh cube;
+    MakeBox(context, (pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &cube);
+    pvtBuildOptions options = GetQuickOptions();
+    options.budget = 12;
+    pvtOccluder occluder;
+    pvtBuildStats stats;
+    CHECK_OK(context, pvtBuildOccluder(context, &options, &cube, &occluder, &stats));
+    assert_true(occluder.mesh.triangleCount <= 12);
+    assert_true(stats.outside == 0);
+    // The strict interior is a cube itself, and nothing hides more than the whole of it.
+    assert_true(stats.measure <= stats.measureOfSolid * 1.0001);
+    assert_true(stats.measure >= stats.measureOfSolid * 0.95);
+    CHECK_NEAR(stats.insideFraction, 30.0 * 30.0 * 30.0 / (32.0 * 32.0 * 32.0), 0.02);
+    pvtOccluder_Free(context, &occluder);
+    pvtMesh_Free(context, &cube);
+    DestroyTestContext(context);
+}
+
+static void the_budget_holds_and_nothing_leaves_the_allowed_voxels(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtMesh torus;
+    MakeTorus(context, &torus);
+    static const int budgets[] = {1, 30};
+    for (int method = 0; method < 2; ++method) {
+        for (int loose = 0; loose < 2; ++loose) {
+            for (size_t b = 0; b < sizeof budgets / sizeof *budgets; ++b) {
+                pvtBuildOptions options = GetQuickOptions();
+                options.method = method == 0 ? PVT_METHOD_PLANAR : PVT_METHOD_PAPER;
+                options.tolerance = (pvtLength){loose, true};
+                options.budget = budgets[b];
+                pvtOccluder occluder;
+                pvtBuildStats stats;
+                CHECK_OK(context, pvtBuildOccluder(context, &options, &torus, &occluder, &stats));
+                assert_true(occluder.mesh.triangleCount >= 1);
+                assert_true(occluder.mesh.triangleCount <= (size_t)budgets[b]);
+                assert_true(stats.outside == 0);
+                assert_true(stats.measure > 0.0);
+                pvtOccluder_Free(context, &occluder);
+            }
+        }
+    }
+    pvtMesh_Free(context, &torus);
+    DestroyTestContext(context);
+}
+
+// The middle of a ring is free: a ray along its axis must not meet the occluder.
+static void the_hole_of_a_torus_stays_open(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtMesh torus;
+    MakeTorus(context, &torus);
+    const pvtBuildOptions options = GetQuickOptions();
+    pvtOccluder occluder;
+    CHECK_OK(context, pvtBuildOccluder(context, &options, &torus, &occluder, NULL));
+    for (size_t t = 0; t < occluder.mesh.triangleCount; ++t) {
+        bool left = false;
+        bool right = false;
+        const uint32_t* corner = occluder.mesh.indices + 3 * t;
+        for (int c = 0; c < 3; ++c) {
+            const pvtVec3 a = occluder.mesh.positions[corner[c]];
+            const pvtVec3 b = occluder.mesh.positions[corner[(c + 1) % 3]];
+            const double side = a.x * b.z - a.z * b.x;
+            left = left || side > 0.0;
+            right = right || side < 0.0;
+        }
+        assert_true(left && right); // the axis passes outside of its projection
+    }
+    pvtOccluder_Free(context, &occluder);
+    pvtMesh_Free(context, &torus);
+    DestroyTestContext(context);
+}
+
+static void threads_do_not_change_a_byte(void** state)
+{
+    (void)state;
+    pvtOccluder first = {0};
+    pvtContext* keeper = CreateTestContext(1);
+    for (int threads = 1; threads <= 4; threads *= 2) {
+        pvtContext* context = threads == 1 ? keeper : CreateTestContext(threads);
+        pvtMesh torus;
+        MakeTorus(context, &torus);
+        pvtBuildOptions options = GetQuickOptions();
+        options.budget = 30;
+        pvtOccluder occluder;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &torus, &occluder, NULL));
+        pvtMesh_Free(context, &torus);
+        if (threads == 1) {
+            first = occluder;
+            continue;
+        }
+        assert_int_equal(occluder.mesh.positionCount, first.mesh.positionCount);
+        assert_int_equal(occluder.mesh.triangleCount, first.mesh.triangleCount);
+        assert_memory_equal(occluder.mesh.positions, first.mesh.positions,
+                            first.mesh.positionCount * sizeof(pvtVec3));
+        assert_memory_equal(occluder.mesh.indices, first.mesh.indices,
+                            3 * first.mesh.triangleCount * sizeof(uint32_t));
+        assert_true(occluder.measure == first.measure);
+        pvtOccluder_Free(context, &occluder);
+        DestroyTestContext(context);
+    }
+    pvtOccluder_Free(keeper, &first);
+    DestroyTestContext(keeper);
+}
+
+static void an_error_sets_the_voxel_size_that_keeps_it(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtMesh box;
+    MakeBox(context, (pvtVec3){0, 0, 0}, (pvtVec3){4, 2, 2}, &box);
+    pvtBuildOptions options = GetQuickOptions();
+    options.error = 0.2;
+    static const pvtLength tolerances[] = {{0.0, true}, {1.0, true}, {0.05, false}};
+    for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; ++i) {
+        options.tolerance = tolerances[i];
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &box, &occluder, &stats));
+        CHECK_NEAR(stats.errorBound, 0.2, 1e-9);
+        pvtOccluder_Free(context, &occluder);
+    }
+    options.tolerance = (pvtLength){0.3, false};
+    pvtOccluder occluder;
+    assert_int_equal(pvtBuildOccluder(context, &options, &box, &occluder, NULL),
+                     PVT_INVALID_ARGUMENT);
+    options.tolerance = (pvtLength){0.0, true};
+    options.error = 1e-4;
+    assert_int_equal(pvtBuildOccluder(context, &options, &box, &occluder, NULL), PVT_LIMIT);
+    pvtMesh_Free(context, &box);
+    DestroyTestContext(context);
+}
+
+static void a_single_triangle_has_nothing_inside_and_the_message_names_remedies(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    const pvtVec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.2}};
+    pvtMesh mesh;
+    CHECK_OK(context, pvtCreateMesh(context, corners, 3, NULL, 1, &mesh));
+    const pvtBuildOptions options = GetQuickOptions();
+    pvtOccluder occluder;
+    assert_int_equal(pvtBuildOccluder(context, &options, &mesh, &occluder, NULL),
+                     PVT_NOTHING_INSIDE);
+    assert_non_null(strstr(pvtContext_GetMessage(context), "--smallest-hole"));
+    assert_int_equal(occluder.mesh.triangleCount, 0);
+    pvtMesh_Free(context, &mesh);
+    DestroyTestContext(context);
+}
+
+static bool StopAfterAWhile(void* user)
+{
+    int* left = user;
+    return --*left < 0;
+}
+
+static void a_cancelled_build_leaves_nothing(void** state)
+{
+    (void)state;
+    static const int questions[] = {0, 3, 50, 200};
+    for (size_t i = 0; i < sizeof questions / sizeof *questions; ++i) {
+        int left = questions[i];
+        pvtContextDef def = pvtDefaultContextDef();
+        def.threadCount = 1;
+        def.isCancelled = StopAfterAWhile;
+        def.user = &left;
+        pvtContext* context = NULL;
+        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+        pvtMesh torus;
+        MakeTorus(context, &torus);
+        const pvtBuildOptions options = GetQuickOptions();
+        pvtOccluder occluder;
+        assert_int_equal(pvtBuildOccluder(context, &options, &torus, &occluder, NULL),
+                         PVT_CANCELLED);
+        assert_null(occluder.planes);
+        pvtMesh_Free(context, &torus);
+        DestroyTestContext(context);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cube_at_twelve_triangles_is_covered_but_for_two_voxels),
+        cmocka_unit_test(the_budget_holds_and_nothing_leaves_the_allowed_voxels),
+        cmocka_unit_test(the_hole_of_a_torus_stays_open),
+        cmocka_unit_test(threads_do_not_change_a_byte),
+        cmocka_unit_test(an_error_sets_the_voxel_size_that_keeps_it),
+        cmocka_unit_test(a_single_triangle_has_nothing_inside_and_the_message_names_remedies),
+        cmocka_unit_test(a_cancelled_build_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
