@@ -13,6 +13,7 @@ typedef struct pvtCommand {
     pvtCommandFcn* run;
 } pvtCommand;
 
+extern const pvtCommand pvtGenerateCommand;
 extern const pvtCommand pvtEvaluateCommand;
 
 #endif

@@ -20,7 +20,7 @@ typedef struct pvtJudgement {
 } pvtJudgement;
 
 /// Characters, of which each takes a column.
-int pvtCountColumns(const char* text);
+int pvtCountTextColumns(const char* text);
 /// A name of at most so many characters: the end of a long one, which tells more than its
 /// beginning. What is no UTF-8, or would steer a terminal, shows as '?'. `text` has room for 4 ×
 /// columns + 8.

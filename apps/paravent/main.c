@@ -7,10 +7,11 @@
 #include <string.h>
 
 static const pvtCommand* const commands[] = {
+    &pvtGenerateCommand,
     &pvtEvaluateCommand,
 };
 
-enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void PrintOverview(FILE* file)
 {

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-int pvtCountColumns(const char* text)
+int pvtCountTextColumns(const char* text)
 {
     int columns = 0;
     for (; *text != '\0'; ++text) {
@@ -15,7 +15,7 @@ int pvtCountColumns(const char* text)
 void pvtShortenName(const char* name, int columns, char* text, size_t size)
 {
     size_t used = 0;
-    int skipped = pvtCountColumns(name) - columns;
+    int skipped = pvtCountTextColumns(name) - columns;
     if (skipped > 0) {
         used = (size_t)snprintf(text, size, "…");
         ++skipped;

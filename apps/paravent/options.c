@@ -196,10 +196,11 @@ static bool CheckComplete(Parser* parser)
     const pvtOption* option = NULL;
     for (size_t i = 0; (option = GetOption(syntax, i)) != NULL; ++i) {
         if (option->isRequired && (parser->line->given >> i & 1) == 0) {
-            char wanted[256];
-            pvtDescribeValue(option, wanted, sizeof wanted);
-            return Refuse(parser, "--%s is missing: %s; usage: paravent %s %s [options]",
-                          option->name, wanted, syntax->name, syntax->operands);
+            const char letter[] = {option->letter, '\0'};
+            const bool hasLetter = option->letter != 0;
+            return Refuse(parser, "-%s%s %s is missing; usage: paravent %s %s [options]",
+                          hasLetter ? "" : "-", hasLetter ? letter : option->name,
+                          option->placeholder, syntax->name, syntax->operands);
         }
     }
     return true;

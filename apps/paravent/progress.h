@@ -5,13 +5,14 @@
 
 #include "report.h"
 
-/// Thins what the stages report: ten updates a second on a terminal or as JSON; as plain text at
-/// most a line a second, when a stage begins, and one every five seconds within it.
+/// Thins what the stages report: ten updates a second on a terminal or as JSON, and a line every
+/// five seconds as plain text.
 typedef struct pvtProgress {
     pvtReport* report;
     double began; ///< [s] on the monotonic clock
     double shown; ///< [s] when something was shown last
     char stage[64];
+    double fraction; ///< shown last
 } pvtProgress;
 
 pvtProgress pvtBeginProgress(pvtReport* report);

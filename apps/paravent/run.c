@@ -34,8 +34,9 @@ const pvtOption pvtCommonOptionTable[] = {
      .kind = PVT_OPTION_CHOICE,
      .offset = offsetof(pvtCommonOptions, progress),
      .choices = progressChoices,
-     .help = "auto: a bar on a terminal, a few lines of text elsewhere; json: everything on stderr "
-             "is one JSON object a line"},
+     .help =
+         "auto: a bar on a terminal, now and then a line of text elsewhere; json: all of stderr "
+         "is one JSON object a line"},
     {.name = "quiet",
      .letter = 'q',
      .kind = PVT_OPTION_FLAG,

@@ -127,7 +127,7 @@ static bool IsBest(const Row* row, const pvtEvaluation* evaluation, const char* 
 
 static void PrintCell(FILE* file, const char* text, int width)
 {
-    const int rest = width - pvtCountColumns(text);
+    const int rest = width - pvtCountTextColumns(text);
     fprintf(file, "%s%*s", text, rest > 0 ? rest : 0, "");
 }
 

@@ -167,7 +167,7 @@ static void wrong_lines_say_what_is_wrong_and_what_would_be_right(void** state)
         {"a -o b --ground=yes", "--ground takes no value", "'=yes'"},
         {"a b -o c", "'b' is one argument too many", "usage: paravent try INPUT -o FILE"},
         {"-o c", "the input file is missing", "usage: paravent try"},
-        {"a", "--output is missing", "usage: paravent try"},
+        {"a", "-o FILE is missing", "usage: paravent try"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         Values values;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What the files of `paravent generate` share.
+#ifndef PVT_APP_GENERATE_H
+#define PVT_APP_GENERATE_H
+
+#include "run.h"
+#include "view_list.h"
+
+#include <paravent/gl.h>
+#include <paravent/io.h>
+
+enum { PVT_SLICER_AUTO, PVT_SLICER_SAMPLE, PVT_SLICER_EGL, PVT_SLICER_OSMESA };
+enum { PVT_CONVENTION_PLAIN, PVT_CONVENTION_GODOT };
+
+/// The line, as it was read. Choices are places among their words.
+typedef struct pvtGenerateOptions {
+    pvtCommonOptions common;
+    const char *output, *stats, *preview;
+    int budget, resolution;
+    double error; ///< [wu] 0: the resolution holds
+    pvtLength tolerance, smallestHole;
+    bool ground, terrain;
+    int up, enclosed, method;
+    const char* views;
+    int slicer;
+    uint64_t seed;
+    int scene;
+    const char* node;
+    int masked, convention;
+} pvtGenerateOptions;
+
+extern const pvtSyntax pvtGenerateSyntax;
+
+pvtGenerateOptions pvtDefaultGenerateOptions(void);
+/// `views` holds what --views FILE said, and must stay as long as the result is used.
+pvtBuildOptions pvtGetBuildOptions(const pvtGenerateOptions* options, const pvtViewList* views);
+
+/// Everything that a run of generate has made.
+typedef struct pvtGenerated {
+    const char* input;
+    pvtModel model;
+    pvtOccluder occluder;
+    pvtBuildStats stats;
+    double began, loaded, built, previewed, saved; ///< [s] on the clock
+} pvtGenerated;
+
+/// The occluder's model file, with what made it under extras.paravent.
+pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
+                          const pvtGenerated* generated);
+/// The fields of the contract, in its order.
+pvtStatus pvtSaveStats(pvtRun* run, const pvtGenerateOptions* options,
+                       const pvtGenerated* generated);
+/// A few lines for people.
+void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGenerated* generated);
+
+#endif

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// The line of `paravent generate` as a table.
+#include "generate.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char* const axisChoices[] = {"x", "y", "z", NULL};
+static const char* const methodChoices[] = {"planar", "paper", NULL};
+static const char* const slicerChoices[] = {"auto", "sample", "egl", "osmesa", NULL};
+static const char* const maskedChoices[] = {"auto", "opaque", "skip", NULL};
+static const char* const conventionChoices[] = {"plain", "godot", NULL};
+
+#define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtGenerateOptions, field)
+
+static const pvtOption outputTable[] = {
+    {.name = "output",
+     .letter = 'o',
+     .isRequired = true,
+     FIELD(PVT_OPTION_TEXT, output),
+     .placeholder = "FILE",
+     .defaultText = "",
+     .help = "where the occluder goes: .glb, .gltf, .obj or .ply by the name's ending"},
+    {.name = "stats",
+     FIELD(PVT_OPTION_TEXT, stats),
+     .placeholder = "FILE",
+     .defaultText = "",
+     .help = "numbers about the run as JSON; - is the standard output"},
+    {.name = "preview",
+     FIELD(PVT_OPTION_TEXT, preview),
+     .placeholder = "FILE.png",
+     .defaultText = "",
+     .help = "a picture of six views, the original with the occluder over it"},
+    {.name = "convention",
+     FIELD(PVT_OPTION_CHOICE, convention),
+     .choices = conventionChoices,
+     .help = "the occluder's node is called NAME_occluder, or NAME-occonly as Godot's import "
+             "wants it; NAME is the input file's"},
+};
+
+static const pvtOption occluderTable[] = {
+    {.name = "budget",
+     FIELD(PVT_OPTION_INT, budget),
+     .placeholder = "N",
+     .least = 1,
+     .most = 65535,
+     .help = "most triangles in the occluder"},
+    {.name = "resolution",
+     FIELD(PVT_OPTION_INT, resolution),
+     .placeholder = "N",
+     .least = 8,
+     .most = 2048,
+     .help = "voxels along the longest side; finer follows the shape better and takes longer"},
+    {.name = "error",
+     FIELD(PVT_OPTION_DOUBLE, error),
+     .placeholder = "E",
+     .most = INFINITY,
+     .isLeastExcluded = true,
+     .defaultText = "",
+     .help = "instead of --resolution: the largest error in world units, which sets the voxels' "
+             "size"},
+    {.name = "tolerance",
+     FIELD(PVT_OPTION_LENGTH, tolerance),
+     .placeholder = "T",
+     .most = INFINITY,
+     .help = "how far a polygon may leave the strict interior; 0 hides nothing that can be seen, "
+             "1vx is the paper's way"},
+    {.name = "method",
+     FIELD(PVT_OPTION_CHOICE, method),
+     .choices = methodChoices,
+     .help = "how polygons are chosen: by gain per triangle, or as in the paper"},
+    {.name = "views",
+     FIELD(PVT_OPTION_TEXT, views),
+     .placeholder = "all|above|FILE",
+     .help =
+         "where the occluder is seen from: all sides, above only, or a file with a direction to "
+         "look along and its weight a line (x y z weight; # begins a comment)"},
+    {.name = "seed",
+     FIELD(PVT_OPTION_COUNT, seed),
+     .placeholder = "S",
+     .most = 9007199254740991.0,
+     .help = "another one may give another occluder, the same one always the same"},
+};
+
+static const pvtOption solidTable[] = {
+    {.name = "smallest-hole",
+     FIELD(PVT_OPTION_LENGTH, smallestHole),
+     .placeholder = "D",
+     .most = INFINITY,
+     .help = "openings narrower than this count as closed"},
+    {.name = "ground",
+     FIELD(PVT_OPTION_FLAG, ground),
+     .help = "the bottom counts as closed, for buildings without a floor"},
+    {.name = "terrain",
+     FIELD(PVT_OPTION_FLAG, terrain),
+     .help = "all below the lowest surface is inside, for landscapes"},
+    {.name = "up",
+     FIELD(PVT_OPTION_CHOICE, up),
+     .choices = axisChoices,
+     .help = "the axis that points up, for --ground, --terrain and --views above"},
+    {.name = "enclosed",
+     FIELD(PVT_OPTION_INT, enclosed),
+     .placeholder = "T",
+     .least = 0,
+     .most = 25,
+     .defaultText = "off",
+     .help = "a place from which at most T of 26 directions lead outside counts as inside; a guess "
+             "that helps where walls stand but do not meet"},
+};
+
+static const pvtOption inputTable[] = {
+    {.name = "scene",
+     FIELD(PVT_OPTION_INT, scene),
+     .placeholder = "N",
+     .least = 0,
+     .most = 1000000,
+     .defaultText = "the file's default scene",
+     .help = "take this scene of a glTF file"},
+    {.name = "node",
+     FIELD(PVT_OPTION_TEXT, node),
+     .placeholder = "NAME",
+     .defaultText = "",
+     .help = "take only this node and what is below it"},
+    {.name = "masked",
+     FIELD(PVT_OPTION_CHOICE, masked),
+     .choices = maskedChoices,
+     .help = "materials with an alpha mask: by their texture, as if opaque, or left out"},
+};
+
+static const pvtOption slicerTable[] = {
+    {.name = "slicer",
+     FIELD(PVT_OPTION_CHOICE, slicer),
+     .choices = slicerChoices,
+     .help = "where slices are made: on the CPU (sample) or by OpenGL; auto is the CPU unless EGL "
+             "offers graphics hardware"},
+};
+
+#define GROUP(title, table)                                                                        \
+    {                                                                                              \
+        title, table, sizeof(table) / sizeof *(table)                                              \
+    }
+
+static const pvtOptionGroup groups[] = {
+    GROUP("Output", outputTable),
+    GROUP("Occluder", occluderTable),
+    GROUP("What counts as inside", solidTable),
+    GROUP("Input", inputTable),
+    GROUP("Work", slicerTable),
+    {"Common", pvtCommonOptionTable, PVT_COMMON_OPTION_COUNT},
+};
+
+const pvtSyntax pvtGenerateSyntax = {
+    .name = "generate",
+    .summary = "turn a mesh into a few polygons that hide what it hides",
+    .operands = "INPUT -o OUTPUT",
+    .leastOperands = 1,
+    .mostOperands = 1,
+    .operandHelp = "INPUT is a model: .glb, .gltf, .obj, .ply, .stl, .fbx or .dae.",
+    .groups = groups,
+    .groupCount = sizeof groups / sizeof *groups,
+    .notes =
+        "Lengths are in the input's world units; with the suffix vx they are in voxels.\n"
+        "Examples:\n"
+        "  paravent generate house.glb -o house_occluder.glb --ground --preview house.png\n"
+        "  paravent generate bunny.glb -o bunny.ply --budget 53 --smallest-hole 6vx\n"
+        "Exit codes: 0 done, 1 wrong command line, 2 invalid input, 3 feature missing here, "
+        "4 output cannot be written, 5 nothing to occlude with, 6 limit reached, 130 cancelled.",
+};
+
+pvtGenerateOptions pvtDefaultGenerateOptions(void)
+{
+    const pvtBuildOptions build = pvtDefaultBuildOptions();
+    return (pvtGenerateOptions){
+        .budget = build.budget,
+        .resolution = build.resolution,
+        .error = build.error,
+        .tolerance = build.tolerance,
+        .smallestHole = build.smallestHole,
+        .up = (int)build.up,
+        .enclosed = build.enclosed,
+        .method = (int)build.method,
+        .views = "all",
+        .slicer = PVT_SLICER_AUTO,
+        .seed = build.seed,
+        .scene = -1,
+        .masked = PVT_MASKED_AUTO,
+        .convention = PVT_CONVENTION_PLAIN,
+    };
+}
+
+pvtBuildOptions pvtGetBuildOptions(const pvtGenerateOptions* options, const pvtViewList* views)
+{
+    pvtBuildOptions build = pvtDefaultBuildOptions();
+    build.budget = options->budget;
+    build.resolution = options->resolution;
+    build.error = options->error;
+    build.tolerance = options->tolerance;
+    build.smallestHole = options->smallestHole;
+    build.ground = options->ground;
+    build.terrain = options->terrain;
+    build.up = (pvtAxis)options->up;
+    build.enclosed = options->enclosed;
+    build.method = (pvtMethod)options->method;
+    build.views.aboveOnly = strcmp(options->views, "above") == 0;
+    build.views.list = views->directions;
+    build.views.listCount = views->count;
+    build.seed = options->seed;
+    return build;
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+// What `paravent generate` tells: the model's extras, the stats file, the summary.
+#include "generate.h"
+#include "json.h"
+#include "targets.h"
+#include "values.h"
+
+#include <math.h>
+#include <paravent/output.h>
+#include <string.h>
+
+enum { NAME_SIZE = 256 };
+
+pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
+                          const pvtGenerated* generated)
+{
+    char stem[NAME_SIZE];
+    char name[NAME_SIZE + 16];
+    pvtGetStem(generated->input, stem, sizeof stem);
+    (void)snprintf(name, sizeof name, "%s%s", stem,
+                   options->convention == PVT_CONVENTION_GODOT ? "-occonly" : "_occluder");
+    const pvtBuildStats* stats = &generated->stats;
+    const pvtExtra extras[] = {
+        {"error_bound", stats->errorBound, NULL},
+        {"tolerance", stats->tolerance, NULL},
+        {"smallest_hole", stats->smallestHole, NULL},
+        {"resolution", stats->resolution, NULL},
+        {"voxel_size", stats->voxelSize, NULL},
+        {"budget", options->budget, NULL},
+        {"measure", stats->measure, NULL},
+        {"measure_of_solid", stats->measureOfSolid, NULL},
+        {"method", 0.0, options->method == PVT_METHOD_PAPER ? "paper" : "planar"},
+        {"seed", (double)options->seed, NULL},
+    };
+    const pvtSaveItem item = {name, &generated->occluder.mesh, extras,
+                              sizeof extras / sizeof *extras};
+    return pvtSaveModel(run->context, options->output, &item, 1);
+}
+
+static void WriteStage(pvtJson* json, const char* stage, double seconds)
+{
+    pvtJson_Number(json, stage, round(seconds * 1e6) / 1e6);
+}
+
+static void WriteSeconds(pvtJson* json, const pvtGenerated* generated)
+{
+    const pvtBuildStats* stats = &generated->stats;
+    pvtJson_BeginObject(json, "seconds");
+    WriteStage(json, "load", generated->loaded - generated->began);
+    WriteStage(json, "voxelize", stats->seconds.voxelize);
+    WriteStage(json, "solid", stats->seconds.solid);
+    WriteStage(json, "sections", stats->seconds.sections);
+    WriteStage(json, "chains", stats->seconds.chains);
+    WriteStage(json, "select", stats->seconds.select);
+    WriteStage(json, "refine", stats->seconds.refine);
+    WriteStage(json, "check", stats->seconds.check);
+    WriteStage(json, "preview", generated->previewed - generated->built);
+    WriteStage(json, "save", generated->saved - generated->previewed);
+    WriteStage(json, "total", generated->saved - generated->began);
+    pvtJson_EndObject(json);
+}
+
+// Numbers as numbers, lengths and words as the line would take them, and null for what holds only
+// when it is given.
+static void WriteOption(pvtJson* json, const pvtOption* option, const void* field, bool isSet)
+{
+    char key[64];
+    char text[64];
+    (void)snprintf(key, sizeof key, "%s", option->name);
+    for (char* dash = strchr(key, '-'); dash != NULL; dash = strchr(dash, '-')) {
+        *dash = '_';
+    }
+    if (!isSet) {
+        pvtJson_String(json, key, NULL);
+    } else if (option->kind == PVT_OPTION_FLAG) {
+        pvtJson_Bool(json, key, *(const bool*)field);
+    } else if (option->kind == PVT_OPTION_INT) {
+        pvtJson_Integer(json, key, *(const int*)field);
+    } else if (option->kind == PVT_OPTION_COUNT || option->kind == PVT_OPTION_SIZE) {
+        pvtJson_Integer(json, key, (int64_t) * (const uint64_t*)field);
+    } else if (option->kind == PVT_OPTION_DOUBLE) {
+        pvtJson_Number(json, key, *(const double*)field);
+    } else if (option->kind == PVT_OPTION_TEXT) {
+        pvtJson_String(json, key, *(const char* const*)field);
+    } else {
+        pvtPrintValue(option, field, text, sizeof text);
+        pvtJson_String(json, key, text);
+    }
+}
+
+// Whether the field says anything: −1 and 0 stand for "not given" where no value could be meant.
+static bool IsSet(const pvtOption* option, const pvtGenerateOptions* options)
+{
+    if (strcmp(option->name, "error") == 0) {
+        return options->error > 0.0;
+    }
+    if (strcmp(option->name, "resolution") == 0) {
+        return options->error == 0.0;
+    }
+    if (option->kind == PVT_OPTION_INT) {
+        return *(const int*)((const char*)options + option->offset) >= 0;
+    }
+    return true;
+}
+
+static void WriteOptions(pvtJson* json, const pvtGenerateOptions* options)
+{
+    static const char* const skipped[] = {"output", "stats",   "preview", "progress",
+                                          "quiet",  "verbose", NULL};
+    pvtJson_BeginObject(json, "options");
+    for (size_t group = 0; group < pvtGenerateSyntax.groupCount; ++group) {
+        for (size_t i = 0; i < pvtGenerateSyntax.groups[group].count; ++i) {
+            const pvtOption* option = &pvtGenerateSyntax.groups[group].options[i];
+            bool isSkipped = false;
+            for (size_t j = 0; skipped[j] != NULL; ++j) {
+                isSkipped = isSkipped || strcmp(option->name, skipped[j]) == 0;
+            }
+            if (!isSkipped) {
+                WriteOption(json, option, (const char*)options + option->offset,
+                            IsSet(option, options));
+            }
+        }
+    }
+    pvtJson_EndObject(json);
+}
+
+static void WriteStats(pvtJson* json, const pvtRun* run, const pvtGenerateOptions* options,
+                       const pvtGenerated* generated)
+{
+    const pvtBuildStats* stats = &generated->stats;
+    pvtJson_BeginObject(json, NULL);
+    pvtJson_String(json, "version", pvtGetVersion());
+    pvtJson_String(json, "input", generated->input);
+    pvtJson_Integer(json, "triangles_in", (int64_t)generated->model.mesh.triangleCount);
+    pvtJson_Integer(json, "triangles", (int64_t)generated->occluder.mesh.triangleCount);
+    pvtJson_Integer(json, "polygons", (int64_t)generated->occluder.loops.loopCount);
+    pvtJson_Integer(json, "resolution", stats->resolution);
+    pvtJson_Number(json, "voxel_size", stats->voxelSize);
+    pvtJson_Number(json, "error_bound", stats->errorBound);
+    pvtJson_Number(json, "inside_fraction", stats->insideFraction);
+    pvtJson_Number(json, "measure", stats->measure);
+    pvtJson_Number(json, "measure_of_solid", stats->measureOfSolid);
+    pvtJson_Integer(json, "candidates", (int64_t)stats->candidateCount);
+    pvtJson_Integer(json, "outside", (int64_t)stats->outside);
+    WriteSeconds(json, generated);
+    pvtJson_Integer(json, "peak_bytes", (int64_t)pvtRun_GetPeakBytes(run));
+    WriteOptions(json, options);
+    pvtJson_BeginArray(json, "warnings");
+    for (size_t i = 0; i < run->report.warningCount; ++i) {
+        pvtJson_String(json, NULL, run->report.warnings[i]);
+    }
+    pvtJson_EndArray(json);
+    pvtJson_EndObject(json);
+}
+
+pvtStatus pvtSaveStats(pvtRun* run, const pvtGenerateOptions* options,
+                       const pvtGenerated* generated)
+{
+    pvtOutput* output = NULL;
+    const pvtStatus status = pvtOpenOutput(run->context, options->stats, &output);
+    if (status != PVT_OK) {
+        return status;
+    }
+    pvtJson json = pvtMakeJson(output);
+    WriteStats(&json, run, options, generated);
+    return pvtCommitOutput(output);
+}
+
+static void PrintSeconds(pvtRun* run, const pvtGenerated* generated)
+{
+    const pvtBuildStats* stats = &generated->stats;
+    pvtReport_Detail(&run->report,
+                     "  seconds: load %.3f, voxelize %.3f, solid %.3f, sections %.3f, "
+                     "chains %.3f, select %.3f, refine %.3f, check %.3f, preview %.3f, save %.3f",
+                     generated->loaded - generated->began, stats->seconds.voxelize,
+                     stats->seconds.solid, stats->seconds.sections, stats->seconds.chains,
+                     stats->seconds.select, stats->seconds.refine, stats->seconds.check,
+                     generated->previewed - generated->built,
+                     generated->saved - generated->previewed);
+}
+
+void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGenerated* generated)
+{
+    const pvtBuildStats* stats = &generated->stats;
+    const size_t polygons = generated->occluder.loops.loopCount;
+    char in[32];
+    char out[32];
+    pvtReport_Say(&run->report, "%s: %s triangles in %zu polygon%s, made from %s triangles",
+                  options->output, pvtFormatCount(generated->occluder.mesh.triangleCount, out),
+                  polygons, polygons == 1 ? "" : "s",
+                  pvtFormatCount(generated->model.mesh.triangleCount, in));
+    if (stats->measureOfSolid > 0.0) {
+        pvtReport_Say(&run->report, "  measure      %.1f %% of the solid's",
+                      100.0 * stats->measure / stats->measureOfSolid);
+    }
+    pvtReport_Say(&run->report, "  error bound  %.4g (voxels of %.4g, %d along the longest side)",
+                  stats->errorBound, stats->voxelSize, stats->resolution);
+    pvtReport_Say(&run->report, "  time         %.2f s", generated->saved - generated->began);
+    PrintSeconds(run, generated);
+}
