@@ -72,11 +72,13 @@ GltfContainer OpenGlb(const pvtLoadJob& job, const pvtSource& source)
     return container;
 }
 
-// Brackets outside of strings, counted before a parser sees them.
-void CheckNesting(const pvtLoadJob& job, const Span& json)
+// Brackets outside of strings, counted before a parser sees them. Returns how many values there are
+// about.
+std::size_t CheckNesting(const pvtLoadJob& job, const Span& json)
 {
     int depth = 0;
     bool inString = false;
+    std::size_t valueCount = 1;
     for (std::size_t i = 0; i < json.size; ++i) {
         const char c = static_cast<char>(json.bytes[i]);
         if ((i & 0xfffff) == 0) {
@@ -93,8 +95,20 @@ void CheckNesting(const pvtLoadJob& job, const Span& json)
             }
         } else if (c == ']' || c == '}') {
             --depth;
+        } else if (c == ',' || c == ':') {
+            ++valueCount;
         }
     }
+    return valueCount;
+}
+
+// What parsers take is not counted by the context, so that it is asked for beforehand.
+void CheckMemory(const pvtLoadJob& job, const Span& json, std::size_t valueCount)
+{
+    constexpr std::size_t bytesPerValue = 100, copies = 2; // this room's tree and tinygltf's
+    const std::string purpose = std::string(job.path) + ": its JSON";
+    Check(pvtCheckMemory(job.context, json.size + copies * bytesPerValue * valueCount,
+                         purpose.c_str()));
 }
 
 } // namespace
@@ -107,7 +121,7 @@ GltfContainer OpenGltfContainer(const pvtLoadJob& job, const pvtSource& source)
     } else {
         container.json = {source.bytes, source.size};
     }
-    CheckNesting(job, container.json);
+    CheckMemory(job, container.json, CheckNesting(job, container.json));
     return container;
 }
 

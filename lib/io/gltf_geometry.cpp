@@ -49,6 +49,11 @@ GltfDecoder::GltfDecoder(const GltfFile& file)
 
 bool GltfDecoder::IsOmitted(const tinygltf::Primitive& primitive)
 {
+    // Valid, and nothing that could be seen.
+    if (primitive.attributes.count("POSITION") == 0) {
+        ++unplaced_;
+        return true;
+    }
     if (primitive.material < 0) {
         return false;
     }
@@ -110,11 +115,7 @@ std::uint32_t GltfDecoder::AddPosition(const GltfAccessor& positions, std::size_
 void GltfDecoder::DecodePrimitive(const tinygltf::Primitive& primitive, const std::string& place,
                                   GltfMesh& mesh)
 {
-    const auto attribute = primitive.attributes.find("POSITION");
-    if (attribute == primitive.attributes.end()) {
-        Refuse(file_.job, "%s has no POSITION", place.c_str());
-    }
-    const std::size_t accessor = static_cast<std::size_t>(attribute->second);
+    const std::size_t accessor = static_cast<std::size_t>(primitive.attributes.at("POSITION"));
     const GltfAccessor positions(file_, accessor);
     CheckPositions(positions, place);
     const bool indexed = primitive.indices >= 0;
@@ -194,6 +195,9 @@ void GltfDecoder::WarnOfOmissions() const
              "%zu primitives with a masked material were left out; --masked opaque keeps them",
              masked_);
     }
+    if (unplaced_ > 0) {
+        Warn(file_.job, "%zu primitives without a POSITION were left out", unplaced_);
+    }
     if (morphed_ > 0) {
         Warn(file_.job, "%zu primitives have morph targets; their base shape is taken", morphed_);
     }
@@ -201,15 +205,16 @@ void GltfDecoder::WarnOfOmissions() const
 
 void GltfDecoder::RefuseIfAllOmitted() const
 {
-    if (drawn_ > 0 || blended_ + masked_ == 0) {
+    if (drawn_ > 0 || blended_ + masked_ + unplaced_ == 0) {
         return;
     }
     Refuse(file_.job,
            "nothing is left: %zu primitives with masked and %zu with blended materials were left "
-           "out; %s",
-           masked_, blended_,
-           masked_ > 0 ? "keep the masked ones by --masked opaque"
-                       : "make the materials opaque if they block the view");
+           "out, and %zu without a POSITION; %s",
+           masked_, blended_, unplaced_,
+           masked_ > 0    ? "keep the masked ones by --masked opaque"
+           : blended_ > 0 ? "make the materials opaque if they block the view"
+                          : "export the model again");
 }
 
 } // namespace pvt

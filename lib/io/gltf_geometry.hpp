@@ -54,7 +54,7 @@ class GltfDecoder
     bool quantized_;
     Array<std::uint32_t> places_; // by element: where it may be among the mesh's positions
     Array<Origin> origins_;       // one a position of the mesh
-    std::size_t blended_ = 0, masked_ = 0, morphed_ = 0, drawn_ = 0; // primitives
+    std::size_t blended_ = 0, masked_ = 0, unplaced_ = 0, morphed_ = 0, drawn_ = 0; // primitives
 };
 
 } // namespace pvt

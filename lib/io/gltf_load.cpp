@@ -3,6 +3,8 @@
 #include "gltf_geometry.hpp"
 #include "gltf_nodes.hpp"
 
+#include <cstdint>
+#include <iterator>
 #include <map>
 
 namespace pvt
@@ -11,12 +13,63 @@ namespace pvt
 namespace
 {
 
+// Hands a parser its bytes, and asks now and then whether to stop.
+class PolledBytes
+{
+  public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = char;
+
+    PolledBytes(pvtContext* context, const std::uint8_t* at) : context_(context), at_(at)
+    {
+    }
+    char operator*() const
+    {
+        return static_cast<char>(*at_);
+    }
+    PolledBytes& operator++()
+    {
+        if ((reinterpret_cast<std::uintptr_t>(++at_) & 0xffff) == 0) {
+            Poll(context_);
+        }
+        return *this;
+    }
+    PolledBytes operator++(int)
+    {
+        const PolledBytes before = *this;
+        ++*this;
+        return before;
+    }
+    bool operator==(const PolledBytes& other) const
+    {
+        return at_ == other.at_;
+    }
+    bool operator!=(const PolledBytes& other) const
+    {
+        return at_ != other.at_;
+    }
+
+  private:
+    pvtContext* context_;
+    const std::uint8_t* at_;
+};
+
 Json ParseJson(const pvtLoadJob& job, const Span& text)
 {
     try {
-        return Json::parse(text.bytes, text.bytes + text.size);
+        return Json::parse(PolledBytes(job.context, text.bytes),
+                           PolledBytes(job.context, text.bytes + text.size));
     } catch (const Json::exception& error) {
-        Refuse(job, "the JSON is not valid: %s", Clean(error.what()).c_str());
+        // "[json.exception.parse_error.101] parse error at line 1, ..."
+        const std::string what = error.what();
+        const std::size_t tag = what.find("] ");
+        char clean[512];
+        Refuse(job, "the JSON is not valid: %s",
+               pvtCleanText(what.c_str() + (tag == std::string::npos ? 0 : tag + 2), clean,
+                            sizeof clean));
     }
 }
 

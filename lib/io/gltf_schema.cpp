@@ -291,7 +291,7 @@ class Checker
             Refuse(job_, "%s is %.15g; it must be %.15g to %.15g", place.c_str(), number, minimum,
                    maximum);
         }
-        if (value.is_number_float()) {
+        if (!value.is_number_unsigned()) {
             value = static_cast<std::uint64_t>(number);
         }
     }

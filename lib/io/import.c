@@ -136,7 +136,8 @@ typedef struct Placement {
 
 static bool PlaceNodes(const pvtLoadJob* job, const Scene* scene, Placement* places)
 {
-    const char* wantedNode = job->options->node;
+    const char* option = job->options->node;
+    const char* wantedNode = option != NULL && option[0] != '\0' ? option : NULL;
     bool found = wantedNode == NULL;
     for (uint64_t i = 0; i < scene->header->nodeCount; ++i) {
         const pvtImportNode* node = &scene->nodes[i];

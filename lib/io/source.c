@@ -174,7 +174,12 @@ int pvtOpenBeneath(int folder, const char* name)
         .flags = (uint64_t)kOpenFlags,
         .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS,
     };
-    const long file = syscall(SYS_openat2, folder, name, &how, sizeof how);
+    long file = -1;
+    // EAGAIN: something was renamed meanwhile, and the kernel cannot tell whether it mattered.
+    for (int attempt = 0; attempt == 0 || (file < 0 && errno == EAGAIN && attempt < 16);
+         ++attempt) {
+        file = syscall(SYS_openat2, folder, name, &how, sizeof how);
+    }
     // Linux before 5.6 does not know the call, and some sandboxes forbid what they do not know.
     if (file < 0 && (errno == ENOSYS || errno == EPERM || errno == EINVAL)) {
         return pvtOpenBeneathByParts(folder, name);

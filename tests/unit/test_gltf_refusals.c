@@ -87,7 +87,7 @@ static void lies_are_refused_with_their_place_and_reason(void** state)
         {"'bufferView':0", "'bufferView':2", "accessors[0].bufferView is 2", 0},
         {"'buffer':0", "'buffer':1", "bufferViews[0].buffer is 1", 0},
         {"'POSITION':0", "'POSITION':2", "primitives[0].attributes.POSITION is 2", 0},
-        {"'POSITION':0", "'NORMAL':0", "meshes[0].primitives[0] has no POSITION", 0},
+        {"'POSITION':0", "'NORMAL':0", "1 without a POSITION", 0},
         {"'indices':1", "'indices':2", "meshes[0].primitives[0].indices is 2", 0},
         {"'indices':1", "'indices':4294967297", "meshes[0].primitives[0].indices", 0},
         {"'indices':1", "'indices':'1'", "meshes[0].primitives[0].indices is not an integer", 0},
