@@ -18,6 +18,7 @@ if [ "$code" = 3 ]; then
     finish
 fi
 holds "the report is written, not $code" test "$code" = 0
+[ "$failures" = 0 ] || finish
 expect 1 "cannot go to the standard output" evaluate "$boulder" small.gltf --report -
 expect 4 "folder nowhere" evaluate "$boulder" small.gltf --report nowhere/page.html
 expect 4 "/dev/full cannot be written" evaluate "$boulder" small.gltf "${quick[@]}" \

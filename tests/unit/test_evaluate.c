@@ -269,6 +269,33 @@ static void directions_cover_the_sphere_evenly(void** state)
     assert_in_range(caps, 3770, 4230);
 }
 
+// Nothing but the four operations and roots goes into the numbers, so that they are the same on
+// every machine. These were also found by a program in another language, written from
+// lib/PIPELINE.md alone. Who changes a definition changes these, and that file.
+static void numbers_stay_what_they_were(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtVec3 positions[4] = {{-1, -1, -1}, {1, -1, 0}, {0, -1, 1}, {0.25, 1, 0}};
+    uint32_t indices[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    const pvtMesh tetrahedron = {positions, indices, 4, 4};
+    Sheet sheet = MakeSheet(-0.5, -1.125, 0.5, 0.25, 0);
+    const pvtMesh occluder = GetMesh(&sheet);
+    const pvtEvaluateOptions options = MakeOptions(16, 1000, 100);
+    pvtEvaluation evaluation;
+    CHECK_OK(context,
+             pvtEvaluateOccluders(context, &options, &tetrahedron, &occluder, 1, &evaluation));
+    const pvtOccluderScore* score = &evaluation.occluders[0];
+    const uint64_t found[6] = {score->uniform.hidden, score->uniform.lost, score->uniform.wrong,
+                               score->small.hidden,   score->small.lost,   score->small.wrong};
+    static const uint64_t golden[6] = {115454, 642942, 3456, 67572, 154219, 2797};
+    for (int i = 0; i < 6; ++i) {
+        assert_int_equal(found[i], golden[i]);
+    }
+    pvtEvaluation_Free(context, &evaluation);
+    DestroyTestContext(context);
+}
+
 static const uint8_t* GetPixel(const pvtImage* image, int x, int y)
 {
     return image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
@@ -341,6 +368,7 @@ int main(void)
         cmocka_unit_test(bytes_do_not_depend_on_threads_or_company),
         cmocka_unit_test(sums_and_the_worst_view_follow_from_the_views),
         cmocka_unit_test(directions_cover_the_sphere_evenly),
+        cmocka_unit_test(numbers_stay_what_they_were),
         cmocka_unit_test(silhouettes_are_black_yellow_and_blue_on_white),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
