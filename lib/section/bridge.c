@@ -32,6 +32,13 @@ typedef struct Bridge {
     int64_t length2;
 } Bridge;
 
+// Nodes of a hole, one behind the other, in one square of the grid.
+typedef struct NodeRun {
+    uint32_t first, end;
+    int32_t column, row;
+    pvtPoint2 low, high; // their box
+} NodeRun;
+
 typedef struct Bridger {
     const pvtLoopSet* contours;
     pvtSegmentGrid grid;
@@ -190,21 +197,51 @@ static bool IsTarget(const Bridger* bridger, uint32_t node, uint32_t from)
 }
 
 // Looks through the nodes of one square for a bridge shorter than the best.
-static void SearchSquare(const Bridger* bridger, uint32_t from, int32_t column, int32_t row,
-                         Bridge* best)
+static void SearchSquare(const Bridger* bridger, const NodeRun* run, uint32_t entry, Bridge* best)
 {
     const pvtSegmentGrid* grid = &bridger->grid;
-    const pvtPoint2 start = bridger->nodes[from].point;
-    uint32_t entry = pvtSegmentGrid_GetHead(grid, column, row);
     for (; entry != NONE; entry = grid->entries[entry].next) {
         const uint32_t node = grid->entries[entry].segment;
-        if (node >= bridger->contours->pointCount || !IsTarget(bridger, node, from)) {
+        if (node >= bridger->contours->pointCount || !IsTarget(bridger, node, run->first)) {
             continue;
         }
-        const int64_t length2 = pvtGetDistance2(start, bridger->nodes[node].point);
-        Bridge bridge;
-        if (length2 < best->length2 && TryBridge(bridger, from, node, &bridge)) {
-            *best = bridge;
+        for (uint32_t from = run->first; from < run->end; ++from) {
+            const int64_t length2 =
+                pvtGetDistance2(bridger->nodes[from].point, bridger->nodes[node].point);
+            Bridge bridge;
+            if (length2 < best->length2 && TryBridge(bridger, from, node, &bridge)) {
+                *best = bridge;
+            }
+        }
+    }
+}
+
+// From the run's box to the nearest point of a square.
+static int64_t GetGap2(const pvtSegmentGrid* grid, const NodeRun* run, int32_t column, int32_t row)
+{
+    const int64_t left = grid->origin.x + ((int64_t)column << grid->shift);
+    const int64_t bottom = grid->origin.y + ((int64_t)row << grid->shift);
+    const int64_t width = (int64_t)1 << grid->shift;
+    const int64_t x = pvtMaxInt64(0, pvtMaxInt64(left - run->high.x, run->low.x - left - width));
+    const int64_t y =
+        pvtMaxInt64(0, pvtMaxInt64(bottom - run->high.y, run->low.y - bottom - width));
+    return x * x + y * y;
+}
+
+// The part of a frame of squares that lies in one row.
+static void SearchRow(const Bridger* bridger, const NodeRun* run, int32_t reach, int32_t row,
+                      Bridge* best)
+{
+    const pvtSegmentGrid* grid = &bridger->grid;
+    const bool isWhole = row == run->row - reach || row == run->row + reach;
+    const int32_t step = isWhole || reach == 0 ? 1 : 2 * reach;
+    for (int32_t column = run->column - reach; column <= run->column + reach; column += step) {
+        if (column < 0 || column >= grid->columns) {
+            continue;
+        }
+        const uint32_t entry = pvtSegmentGrid_GetHead(grid, column, row);
+        if (entry != NONE && GetGap2(grid, run, column, row) < best->length2) {
+            SearchSquare(bridger, run, entry, best);
         }
     }
 }
@@ -214,31 +251,46 @@ static int32_t Clamp(int32_t value, int32_t count)
     return value < 0 ? 0 : value >= count ? count - 1 : value;
 }
 
-// Squares in growing frames around a node, until what is farther out must be longer than the best.
-static void SearchFrom(const Bridger* bridger, uint32_t from, Bridge* best)
+// Squares in growing frames around a run, until what is farther out must be longer than the best.
+static void SearchFrom(const Bridger* bridger, const NodeRun* run, Bridge* best)
 {
     const pvtSegmentGrid* grid = &bridger->grid;
-    const pvtPoint2 start = bridger->nodes[from].point;
-    const int32_t column = pvtSegmentGrid_GetColumn(grid, start.x);
-    const int32_t row = pvtSegmentGrid_GetRow(grid, start.y);
     const int32_t most = grid->columns > grid->rows ? grid->columns : grid->rows;
     for (int32_t reach = 0; reach < most; ++reach) {
         const int64_t nearest = reach == 0 ? 0 : ((int64_t)(reach - 1) << grid->shift);
         if (nearest * nearest > best->length2) {
             return;
         }
-        const int32_t bottom = Clamp(row - reach, grid->rows);
-        const int32_t top = Clamp(row + reach, grid->rows);
-        for (int32_t y = bottom; y <= top; ++y) {
-            const bool isWhole = y == row - reach || y == row + reach;
-            const int32_t step = isWhole || reach == 0 ? 1 : 2 * reach;
-            for (int32_t x = column - reach; x <= column + reach; x += step) {
-                if (x >= 0 && x < grid->columns) {
-                    SearchSquare(bridger, from, x, y, best);
-                }
-            }
+        const int32_t top = Clamp(run->row + reach, grid->rows);
+        for (int32_t row = Clamp(run->row - reach, grid->rows); row <= top; ++row) {
+            SearchRow(bridger, run, reach, row, best);
         }
     }
+}
+
+// The nodes from `first` on that lie in the same square.
+static NodeRun FindRun(const Bridger* bridger, uint32_t first, uint32_t end)
+{
+    const pvtSegmentGrid* grid = &bridger->grid;
+    const pvtPoint2 start = bridger->nodes[first].point;
+    NodeRun run = {.first = first,
+                   .end = first,
+                   .column = pvtSegmentGrid_GetColumn(grid, start.x),
+                   .row = pvtSegmentGrid_GetRow(grid, start.y),
+                   .low = start,
+                   .high = start};
+    for (; run.end < end; ++run.end) {
+        const pvtPoint2 at = bridger->nodes[run.end].point;
+        if (pvtSegmentGrid_GetColumn(grid, at.x) != run.column ||
+            pvtSegmentGrid_GetRow(grid, at.y) != run.row) {
+            break;
+        }
+        run.low.x = at.x < run.low.x ? at.x : run.low.x;
+        run.low.y = at.y < run.low.y ? at.y : run.low.y;
+        run.high.x = at.x > run.high.x ? at.x : run.high.x;
+        run.high.y = at.y > run.high.y ? at.y : run.high.y;
+    }
+    return run;
 }
 
 static uint32_t AddCopy(Bridger* bridger, uint32_t node)
@@ -277,8 +329,11 @@ static pvtStatus JoinHole(pvtContext* context, Bridger* bridger, uint32_t loop)
 {
     const pvtLoopSet* contours = bridger->contours;
     Bridge best = {NONE, NONE, INT64_MAX};
-    for (size_t i = contours->starts[loop]; i < contours->starts[loop + 1]; ++i) {
-        SearchFrom(bridger, (uint32_t)i, &best);
+    const uint32_t end = (uint32_t)contours->starts[loop + 1];
+    for (uint32_t first = (uint32_t)contours->starts[loop]; first < end;) {
+        const NodeRun run = FindRun(bridger, first, end);
+        SearchFrom(bridger, &run, &best);
+        first = run.end;
     }
     if (best.from == NONE) {
         return pvtFail(context, PVT_INVALID_ARGUMENT,

@@ -181,10 +181,11 @@ static pvtStatus BuildChain(pvtContext* context, Builder* builder, size_t loop, 
         points = builder->reduced;
         count = builder->lattice.count;
     }
-    if (pvtLinks_Build(&builder->links, points, count)) {
+    const pvtStatus status = pvtLinks_Build(context, &builder->links, points, count);
+    if (status == PVT_OK && builder->links.ring.count == 3) {
         AddChain(&builder->links, chains);
     }
-    return PVT_OK;
+    return status;
 }
 
 static pvtStatus BuildAll(pvtContext* context, Builder* builder, pvtChainSet* chains)

@@ -4,8 +4,8 @@
 
 #include <paravent/section.h>
 
-/// True when every cell whose interior the triangle touches is set; exact. A cell is `unit`, a
-/// power of two, point units wide. The triangle may wind either way; one without area touches nothing.
+/// True when every cell whose interior the triangle touches is set; exact. A cell is `unit` point
+/// units wide, a power of two. The triangle may wind either way; one without area touches nothing.
 bool pvtIsTriangleCovered(const pvtBitmap* cells, int32_t unit, const pvtPoint2 corners[3]);
 
 /// The same for a segment; one that runs along the border between cells touches none.

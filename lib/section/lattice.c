@@ -163,6 +163,7 @@ static void Load(pvtLattice* lattice, const pvtPoint2* points, size_t count)
 {
     const Box box = GetBox(points, count);
     const int32_t unit = pvtFindLatticeUnit(points, count);
+    assert(unit > 0);
     const size_t rows = (size_t)((box.high.y - box.low.y) / unit) + 1;
     const uint32_t last = (uint32_t)count - 1;
     lattice->wordsPerRow = pvtGetWordCount((size_t)((box.high.x - box.low.x) / unit) + 1);

@@ -378,7 +378,22 @@ static void SlidePoints(pvtLinks* links, uint32_t node, uint32_t reach)
     }
 }
 
-bool pvtLinks_Build(pvtLinks* links, const pvtPoint2* points, size_t count)
+static void TakeStep(pvtLinks* links, uint32_t step)
+{
+    // Links before a step that costs nothing are no better than the link behind it.
+    if (links->first == NONE && links->ring.count <= links->longest &&
+        links->queue.places[step].cost > 0) {
+        BeginLinks(links);
+    }
+    const bool isPoint = step % 2 == 0;
+    const uint32_t node = isPoint ? TakeOutPoint(links, step / 2) : TakeOutEdge(links, step / 2);
+    if (links->first != NONE && links->ring.count <= PVT_SLIDE_POINTS) {
+        SlidePoints(links, node, isPoint ? 2 : 3);
+    }
+}
+
+pvtStatus pvtLinks_Build(pvtContext* context, pvtLinks* links, const pvtPoint2* points,
+                         size_t count)
 {
     assert(count >= 3);
     const size_t nodes = pvtGetLinkNodeLimit(count);
@@ -390,20 +405,13 @@ bool pvtLinks_Build(pvtLinks* links, const pvtPoint2* points, size_t count)
     ScoreAll(links);
     uint32_t step;
     while (links->ring.count > 3 && FindStepAnyhow(links, &step)) {
-        // Links before a step that costs nothing are no better than the link behind it.
-        if (links->first == NONE && links->ring.count <= links->longest &&
-            links->queue.places[step].cost > 0) {
-            BeginLinks(links);
+        if (links->ring.count % 512 == 0 && pvtIsCancelled(context)) {
+            return pvtFailCancelled(context);
         }
-        const bool isPoint = step % 2 == 0;
-        const uint32_t node =
-            isPoint ? TakeOutPoint(links, step / 2) : TakeOutEdge(links, step / 2);
-        if (links->first != NONE && links->ring.count <= PVT_SLIDE_POINTS) {
-            SlidePoints(links, node, isPoint ? 2 : 3);
-        }
+        TakeStep(links, step);
     }
     if (links->first == NONE) {
         BeginLinks(links);
     }
-    return links->ring.count == 3;
+    return PVT_OK;
 }

@@ -60,7 +60,9 @@ uint32_t pvtLinks_PutIn(pvtLinks* links, uint32_t node, pvtPoint2 point, uint32_
 /// and a neighbour. Returns the node that stands there, or UINT32_MAX.
 uint32_t pvtLinks_Slide(pvtLinks* links, uint32_t node);
 
-/// Finds all links of a polygon of three points or more. False when it is not weakly simple.
-bool pvtLinks_Build(pvtLinks* links, const pvtPoint2* points, size_t count);
+/// Finds all links of a polygon of three points or more. More than three points are left in the
+/// ring when it is not weakly simple.
+pvtStatus pvtLinks_Build(pvtContext* context, pvtLinks* links, const pvtPoint2* points,
+                         size_t count);
 
 #endif

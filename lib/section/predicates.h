@@ -4,6 +4,7 @@
 #ifndef PVT_SECTION_PREDICATES_H
 #define PVT_SECTION_PREDICATES_H
 
+#include <assert.h>
 #include <paravent/section.h>
 
 static inline bool pvtIsSamePoint(pvtPoint2 a, pvtPoint2 b)
@@ -24,12 +25,14 @@ static inline int64_t pvtMaxInt64(int64_t a, int64_t b)
 /// Of a quotient whose divisor is positive.
 static inline int64_t pvtFloorDivide(int64_t value, int64_t divisor)
 {
+    assert(divisor > 0);
     const int64_t quotient = value / divisor;
     return quotient - (value % divisor < 0);
 }
 
 static inline int64_t pvtCeilDivide(int64_t value, int64_t divisor)
 {
+    assert(divisor > 0);
     const int64_t quotient = value / divisor;
     return quotient + (value % divisor > 0);
 }

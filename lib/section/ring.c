@@ -200,8 +200,11 @@ static bool DoEdgesMeetBox(const pvtRing* ring, const Box* box, uint32_t first)
     const int32_t *nextXs = ring->nextXs + first, *nextYs = ring->nextYs + first;
     int found = 0;
     for (int i = 0; i < BLOCK; ++i) {
-        found |= (Max(xs[i], nextXs[i]) >= box->left) & (Min(xs[i], nextXs[i]) <= box->right) &
-                 (Max(ys[i], nextYs[i]) >= box->bottom) & (Min(ys[i], nextYs[i]) <= box->top);
+        const int isWithinX = Max(xs[i], nextXs[i]) >= box->left;
+        const int isBeforeX = Min(xs[i], nextXs[i]) <= box->right;
+        const int isWithinY = Max(ys[i], nextYs[i]) >= box->bottom;
+        const int isBeforeY = Min(ys[i], nextYs[i]) <= box->top;
+        found |= isWithinX & isBeforeX & isWithinY & isBeforeY;
     }
     return found != 0;
 }

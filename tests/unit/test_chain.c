@@ -467,6 +467,30 @@ static void a_failed_allocation_leaves_nothing(void** state)
     DestroyTestContext(context);
 }
 
+static bool IsAlwaysCancelled(void* user)
+{
+    (void)user;
+    return true;
+}
+
+static void a_cancelled_build_leaves_nothing(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    Slice slice = MakeSlice(context, MakeShape(context, 64, IsRing), 1);
+    pvtContextDef def = pvtDefaultContextDef();
+    def.isCancelled = IsAlwaysCancelled;
+    pvtContext* cancelled = NULL;
+    assert_int_equal(pvtCreateContext(&def, &cancelled), PVT_OK);
+    const pvtChainOptions options = pvtDefaultChainOptions();
+    pvtChainSet chains;
+    assert_int_equal(pvtBuildChains(cancelled, &options, &slice.polygons, &chains), PVT_CANCELLED);
+    assert_null(chains.points);
+    DestroyTestContext(cancelled);
+    FreeSlice(context, &slice);
+    DestroyTestContext(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -484,6 +508,7 @@ int main(void)
         cmocka_unit_test(the_cells_of_a_triangle_are_those_it_overlaps),
         cmocka_unit_test(options_out_of_range_are_refused),
         cmocka_unit_test(a_failed_allocation_leaves_nothing),
+        cmocka_unit_test(a_cancelled_build_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
