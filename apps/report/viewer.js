@@ -65,7 +65,7 @@ function fillViews(scores, extra, chosen, stage) {
         const image = create("img", undefined, button);
         image.src = extra.pictures[chosen][k];
         image.alt = `view ${view}`;
-        create("span", `${isWorst ? "worst view: " : ""}recall ${percent(score.uniform.recall, 1)}`,
+        create("span", `${isWorst ? "worst: " : ""}recall ${percent(score.uniform.recall, 1)}`,
             button);
         button.addEventListener("click", () => {
             stage?.look(score.direction);
@@ -84,6 +84,11 @@ function findMaking(text) {
     }
 }
 
+function describe(value) {
+    if (typeof value === "object") return JSON.stringify(value);
+    return String(typeof value === "number" ? Number(value.toPrecision(6)) : value);
+}
+
 function fillMaking(extra) {
     extra.names.forEach((name, i) => {
         create("h3", name, find("making"));
@@ -95,7 +100,7 @@ function fillMaking(extra) {
         const list = create("dl", undefined, find("making"));
         for (const [key, value] of Object.entries(made)) {
             create("dt", key.replaceAll("_", " "), list);
-            create("dd", typeof value === "object" ? JSON.stringify(value) : String(value), list);
+            create("dd", describe(value), list);
         }
     });
 }
