@@ -236,9 +236,10 @@ PVT_API pvtChainOptions pvtDefaultChainOptions(void);
 
 /// From each polygon down to one triangle (paper, section 4.4). Each step takes out the point whose
 /// triangle with its neighbours has the least area, or an edge whose neighbours are lengthened
-/// until they meet, if that costs less, such that the link stays weakly simple and within the
-/// allowed cells. What adds area within the allowed cells goes before what costs any. Polygons must
-/// be weakly simple: others are skipped.
+/// until they meet, if that costs less; what adds area within the allowed cells goes before what
+/// costs any. In short links points may slide, too, to where the area is greater. Every link is
+/// weakly simple, and within the allowed cells if the polygon was; where allowed is null, each lies
+/// within the one before. Polygons that are not weakly simple are skipped.
 PVT_API pvtStatus pvtBuildChains(pvtContext* context, const pvtChainOptions* options,
                                  const pvtLoopSet* polygons, pvtChainSet* chains);
 PVT_API void pvtChainSet_Free(pvtContext* context, pvtChainSet* chains);
