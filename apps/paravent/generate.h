@@ -20,7 +20,7 @@ typedef struct pvtGenerateOptions {
     double error; ///< [wu] 0: the resolution holds
     pvtLength tolerance, smallestHole;
     bool ground, terrain;
-    int up, enclosed, method;
+    int up, enclosed, method, effort;
     const char* views;
     int slicer;
     uint64_t seed;

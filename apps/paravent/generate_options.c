@@ -7,6 +7,7 @@
 
 static const char* const axisChoices[] = {"x", "y", "z", NULL};
 static const char* const methodChoices[] = {"planar", "paper", NULL};
+static const char* const effortChoices[] = {"fast", "default", "best", NULL};
 static const char* const slicerChoices[] = {"auto", "sample", "egl", "osmesa", NULL};
 static const char* const maskedChoices[] = {"auto", "opaque", "skip", NULL};
 static const char* const conventionChoices[] = {"plain", "godot", NULL};
@@ -69,6 +70,10 @@ static const pvtOption occluderTable[] = {
      FIELD(PVT_OPTION_CHOICE, method),
      .choices = methodChoices,
      .help = "how polygons are chosen: by gain per triangle, or as in the paper"},
+    {.name = "effort",
+     FIELD(PVT_OPTION_CHOICE, effort),
+     .choices = effortChoices,
+     .help = "how long to go on improving the occluder; nothing to the paper's way"},
     {.name = "views",
      FIELD(PVT_OPTION_TEXT, views),
      .placeholder = "all|above|FILE",
@@ -179,6 +184,7 @@ pvtGenerateOptions pvtDefaultGenerateOptions(void)
         .up = (int)build.up,
         .enclosed = build.enclosed,
         .method = (int)build.method,
+        .effort = (int)build.effort,
         .views = "all",
         .slicer = PVT_SLICER_AUTO,
         .seed = build.seed,
@@ -201,6 +207,7 @@ pvtBuildOptions pvtGetBuildOptions(const pvtGenerateOptions* options, const pvtV
     build.up = (pvtAxis)options->up;
     build.enclosed = options->enclosed;
     build.method = (pvtMethod)options->method;
+    build.effort = (pvtEffort)options->effort;
     build.views.aboveOnly = strcmp(options->views, "above") == 0;
     build.views.list = views->directions;
     build.views.listCount = views->count;

@@ -19,6 +19,7 @@ pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
     pvtGetStem(generated->input, stem, sizeof stem);
     (void)snprintf(name, sizeof name, "%s%s", stem,
                    options->convention == PVT_CONVENTION_GODOT ? "-occonly" : "_occluder");
+    static const char* const efforts[] = {"fast", "default", "best"};
     const pvtBuildStats* stats = &generated->stats;
     const pvtExtra extras[] = {
         {"error_bound", stats->errorBound, NULL},
@@ -30,6 +31,7 @@ pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
         {"measure", stats->measure, NULL},
         {"measure_of_solid", stats->measureOfSolid, NULL},
         {"method", 0.0, options->method == PVT_METHOD_PAPER ? "paper" : "planar"},
+        {"effort", 0.0, efforts[options->effort]},
         {"seed", (double)options->seed, NULL},
     };
     const pvtSaveItem item = {name, &generated->occluder.mesh, extras,

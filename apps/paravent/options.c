@@ -96,7 +96,7 @@ const char* pvtFindSimilarWord(const char* word, const char* const* candidates)
         const bool isPrefix = length >= 3 && strncmp(candidates[i], word, length) == 0;
         const size_t distance = isPrefix ? 1 : GetEditDistance(word, candidates[i]);
         // A short word has few letters to get wrong before it is another one.
-        if (distance < bestDistance && distance * 2 <= length) {
+        if (distance < bestDistance && distance * 2 < length) {
             bestDistance = distance;
             best = candidates[i];
         }

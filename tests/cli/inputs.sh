@@ -12,7 +12,9 @@ printf 'this is no model\n' >text.gltf
 expect 2 "text.gltf" generate text.gltf -o out.glb
 mkdir folder.glb
 expect 2 "folder.glb" generate folder.glb -o out.glb
-printf 'v 0 0 0\n' >model.xyz
+printf 'v 0 0 0\n' >points.obj
+expect 2 "points.obj" generate points.obj -o out.glb
+cp points.obj model.xyz
 expect 3 "model.xyz" generate model.xyz -o out.glb
 cp "$models/boulder.glb" boulder.glb
 expect 1 'no node named "no such"' generate boulder.glb -o out.glb --node "no such"
@@ -36,9 +38,10 @@ expect 2 "views.txt:1: the line is too long" generate boulder.glb -o out.glb --v
 expect 2 "--views . cannot be read" generate boulder.glb -o out.glb --views .
 
 expect 5 "--terrain" generate "$models/sheet.glb" -o out.glb --resolution 32
-expect 5 "--smallest-hole" generate "$models/sheet.glb" -o out.glb --resolution 32
+expect 5 "--smallest-hole" generate "$models/tree.glb" -o out.glb --resolution 16
+expect 5 "--ground" generate "$models/house.glb" -o out.glb --resolution 16
 expect 6 "memory limit" generate boulder.glb -o out.glb --memory-limit 1M
 expect 6 "" generate boulder.glb -o out.glb --error 1e-9
 
-only boulder.glb cut.glb empty.glb folder.glb model.xyz text.gltf views.txt
+only boulder.glb cut.glb empty.glb folder.glb model.xyz points.obj text.gltf views.txt
 finish

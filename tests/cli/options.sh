@@ -67,6 +67,12 @@ fi
 made "$boulder" --resolution 24 --budget 8 --method paper
 is options.method paper
 compare "$(stat_of stats.json triangles)" "<=" 8
+for effort in fast default best; do
+    made "$boulder" --budget 12 --effort "$effort"
+    is options.effort "$effort"
+    compare "$(stat_of stats.json measure)" ">=" "${last:-0}"
+    last="$(stat_of stats.json measure)"
+done
 made "$boulder" --resolution 24 --budget 2 --views all
 cp out.glb all.glb
 made "$boulder" --resolution 24 --budget 2 --views above

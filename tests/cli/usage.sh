@@ -37,6 +37,7 @@ expect 1 "--smallest-hole inf: it takes" "${generate[@]}" --smallest-hole inf
 expect 1 "--enclosed 26: it takes a whole number, 0 to 25" "${generate[@]}" --enclosed 26
 expect 1 "--up w: it takes x, y or z" "${generate[@]}" --up w
 expect 1 "--method papre: did you mean paper?" "${generate[@]}" --method papre
+expect 1 "--effort most: it takes fast, default or best" "${generate[@]}" --effort most
 expect 1 "--slicer gpu: it takes auto, sample, egl or osmesa" "${generate[@]}" --slicer gpu
 expect 1 "--masked off: it takes auto, opaque or skip" "${generate[@]}" --masked off
 expect 1 "--convention unity: it takes plain or godot" "${generate[@]}" --convention unity
@@ -54,7 +55,7 @@ only
 
 expect 0 "" generate --help
 for option in output budget resolution error tolerance smallest-hole ground terrain up enclosed \
-    method views slicer threads seed memory-limit stats preview convention scene node masked \
+    method effort views slicer threads seed memory-limit stats preview convention scene node masked \
     progress quiet verbose help; do
     holds "generate --help tells of --$option" grep -qE -- "--$option( |\$)" out
 done

@@ -22,7 +22,7 @@ checks=$((checks + 1))
 NODE_PATH="$PVT_NODE_MODULES" node "$here/validate.cjs" ./*.glb ./*.gltf || fail "the validator"
 
 # And what was written can be read again.
-for format in glb gltf; do
+for format in glb gltf obj ply; do
     expect 0 "" generate "$models/boulder.glb" -o "again.$format" "${quick[@]}"
     paravent generate "again.$format" -o thrice.glb "${quick[@]}" --resolution 64 --tolerance 1vx
     holds "again.$format is read: $(cat err)" test "$code" = 0 -o "$code" = 5
