@@ -47,7 +47,8 @@ pvtSelectOptions pvtDefaultSelectOptions(void)
     return (pvtSelectOptions){.budget = 64, .completion = 0.01};
 }
 
-// The levels worth trying above `present`: two triangles first, all of the next few, then ever fewer.
+// The levels worth trying above `present`: two triangles first, all of the next few, then ever
+// fewer.
 static int ListLevels(int32_t present, int32_t most, int32_t levels[MAX_LEVELS])
 {
     int count = 0;
