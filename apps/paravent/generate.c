@@ -140,6 +140,11 @@ static pvtStatus Build(pvtRun* run, const pvtGenerateOptions* options, const Set
     const pvtStatus status = pvtBuildOccluder(run->context, &build, &generated->model.mesh,
                                               &generated->occluder, &generated->stats);
     generated->built = pvtGetClock();
+    if (status == PVT_INVALID_INPUT || status == PVT_NOTHING_INSIDE || status == PVT_LIMIT) {
+        // The stages know meshes, not files.
+        return pvtRun_Fail(run, status, "%s: %s", generated->input,
+                           pvtContext_GetMessage(run->context));
+    }
     return status;
 }
 

@@ -37,6 +37,7 @@ head -c 5000 /dev/zero | tr '\0' '1' >views.txt
 expect 2 "views.txt:1: the line is too long" generate boulder.glb -o out.glb --views views.txt
 expect 2 "--views . cannot be read" generate boulder.glb -o out.glb --views .
 
+expect 5 "sheet.glb: nothing is inside" generate "$models/sheet.glb" -o out.glb --resolution 32
 expect 5 "--terrain" generate "$models/sheet.glb" -o out.glb --resolution 32
 expect 5 "--smallest-hole" generate "$models/tree.glb" -o out.glb --resolution 16
 expect 5 "--ground" generate "$models/house.glb" -o out.glb --resolution 16
