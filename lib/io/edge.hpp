@@ -6,6 +6,7 @@
 #include "formats.h"
 #include "text.h"
 
+#include <cassert>
 #include <cstdarg>
 #include <cstddef>
 #include <exception>
@@ -132,10 +133,12 @@ template <class T> class Array
 
     T& operator[](std::size_t i)
     {
+        assert(i < size_);
         return data_[i];
     }
     const T& operator[](std::size_t i) const
     {
+        assert(i < size_);
         return data_[i];
     }
     T* Data() const

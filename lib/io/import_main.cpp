@@ -126,7 +126,9 @@ class Welder
         std::size_t slot = Hash(bits) & (slots_.size() - 1);
         for (; slots_[slot] != 0; slot = (slot + 1) & (slots_.size() - 1)) {
             const std::size_t place = slots_[slot] - 1;
-            if (std::memcmp(&positions[3 * (base + place)], position, sizeof bits) == 0) {
+            std::uint32_t known[3];
+            std::memcpy(known, &positions[3 * (base + place)], sizeof known);
+            if (std::equal(bits, bits + 3, known)) {
                 return static_cast<std::uint32_t>(place);
             }
         }

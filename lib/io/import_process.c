@@ -17,8 +17,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char** environ;
-
 static const char kProgram[] = "paravent-import";
 
 enum {

@@ -41,11 +41,16 @@ static bool IsGlb(const Head* head)
     return head->size >= 4 && memcmp(head->bytes, "glTF", 4) == 0;
 }
 
+static bool IsBlank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
 // Whether the first thing in the file, after a byte order mark and white space, is an object.
 static bool IsJson(const Head* head)
 {
     size_t at = head->size >= 3 && memcmp(head->bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-    while (at < head->size && memchr(" \t\r\n", head->bytes[at], 4) != NULL) {
+    while (at < head->size && IsBlank(head->bytes[at])) {
         ++at;
     }
     return at < head->size && head->bytes[at] == '{';

@@ -10,17 +10,19 @@
 extern "C" {
 #endif
 
-/// What to do with materials whose alpha is masked.
+/// What to do with materials whose alpha is masked. AUTO is SKIP, as long as textures are not
+/// looked at. What is left out is told by a warning.
 typedef enum pvtMasked { PVT_MASKED_AUTO, PVT_MASKED_OPAQUE, PVT_MASKED_SKIP } pvtMasked;
 
 typedef struct pvtLoadOptions {
     int scene;        ///< −1: the default scene, or the first; else its index; default −1
-    const char* node; ///< a node's name: only it and what is below it; null: everything
+    const char* node; ///< only nodes of this name and what is below them; null: everything
     pvtMasked masked; ///< default PVT_MASKED_AUTO
     size_t maxBytes;  ///< of any one file; default 4 GiB
 } pvtLoadOptions;
 
-/// One instance of a mesh by a node: a run of triangles of the model's mesh.
+/// One instance of a mesh by a node: a run of triangles of the model's mesh. Where a node of OBJ,
+/// FBX or DAE has several meshes, they are taken as one.
 typedef struct pvtModelPart {
     char* name; ///< the node's, else the mesh's, else "node_12"; UTF-8
     size_t firstTriangle, triangleCount;
@@ -37,10 +39,17 @@ typedef struct pvtModel {
 
 PVT_API pvtLoadOptions pvtDefaultLoadOptions(void);
 
-/// glTF and GLB by their contents; OBJ, PLY, STL, FBX and DAE by their names' endings. Triangles
-/// with positions that are not finite are dropped with a warning. PVT_INVALID_INPUT names file,
-/// place, reason and remedy; PVT_UNSUPPORTED names the format or the required extension that is
-/// missing. A file without any triangle is PVT_INVALID_INPUT.
+/// glTF and GLB by their contents; OBJ, PLY, STL, FBX and DAE by their names' endings. glTF reads
+/// the buffers beside the file, and nothing outside of its folder; no other format opens a second
+/// file. Triangles with positions that are not finite, or too large for a float, are dropped with a
+/// warning; blended materials are left out with one, and skins and morph targets give their bind
+/// pose with one. PVT_INVALID_INPUT names file, place, reason and remedy; PVT_UNSUPPORTED names the
+/// format or the required extension that is missing; PVT_INVALID_ARGUMENT the scene or node that is
+/// not there. A file without any triangle is PVT_INVALID_INPUT.
+///
+/// OBJ, PLY, STL, FBX and DAE are parsed by assimp in a process of its own, the program
+/// paravent-import, which is looked for in the folders of PARAVENT_MODULE_PATH, then in
+/// "paravent" and "../lib/paravent" beside the program or library, then where it was installed.
 PVT_API pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* options, const char* path,
                                pvtModel* model);
 PVT_API void pvtModel_Free(pvtContext* context, pvtModel* model);
@@ -67,7 +76,8 @@ PVT_API pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtS
 /// Whether pvtSaveModel knows the path's ending: to be asked before the long work.
 PVT_API bool pvtCanSaveModel(const char* path);
 
-/// PNG, by OpenImageIO, which is opened at the first call; PVT_UNSUPPORTED without it.
+/// PNG, by OpenImageIO, which is opened at the first call; PVT_UNSUPPORTED without it. Its module
+/// paravent_image.so is looked for in the same places as paravent-import.
 PVT_API pvtStatus pvtSaveImage(pvtContext* context, const char* path, const pvtImage* image);
 /// Any format that OpenImageIO reads.
 PVT_API pvtStatus pvtLoadImage(pvtContext* context, const char* path, pvtImage* image);
