@@ -5,6 +5,16 @@ target_compile_options(pvt_flags INTERFACE
     -ffp-contract=off
     $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes>
     $<$<BOOL:${PARAVENT_WERROR}>:-Werror>)
+# gcc 12 takes (double)(float)x for x wherever it packs two of them into a vector, so that what
+# should have been rounded as files store it is not.
+foreach(PVT_LANGUAGE IN ITEMS C CXX)
+    if(CMAKE_${PVT_LANGUAGE}_COMPILER_ID STREQUAL "GNU" AND
+       CMAKE_${PVT_LANGUAGE}_COMPILER_VERSION VERSION_GREATER_EQUAL 12 AND
+       CMAKE_${PVT_LANGUAGE}_COMPILER_VERSION VERSION_LESS 13)
+        target_compile_options(pvt_flags INTERFACE
+            $<$<COMPILE_LANGUAGE:${PVT_LANGUAGE}>:-fno-tree-slp-vectorize>)
+    endif()
+endforeach()
 target_compile_definitions(pvt_flags INTERFACE _GNU_SOURCE)
 if(PARAVENT_FUZZ)
     target_compile_options(pvt_flags INTERFACE -fsanitize=fuzzer-no-link)
