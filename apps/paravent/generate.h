@@ -17,7 +17,8 @@ typedef struct pvtGenerateOptions {
     pvtCommonOptions common;
     const char *output, *stats, *preview;
     int budget, resolution;
-    double error; ///< [wu] 0: the resolution holds
+    double error;    ///< [wu] 0: the resolution holds
+    double deadline; ///< [s] 0: none
     pvtLength tolerance, smallestHole;
     bool ground, terrain;
     int up, enclosed, method, effort;

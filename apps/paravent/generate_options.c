@@ -74,6 +74,15 @@ static const pvtOption occluderTable[] = {
      FIELD(PVT_OPTION_CHOICE, effort),
      .choices = effortChoices,
      .help = "how long to go on improving the occluder; nothing to the paper's way"},
+    {.name = "deadline",
+     FIELD(PVT_OPTION_DOUBLE, deadline),
+     .placeholder = "S",
+     .most = INFINITY,
+     .isLeastExcluded = true,
+     .defaultText = "",
+     .help =
+         "seconds after which the best occluder so far is taken; the result then depends on the "
+         "machine"},
     {.name = "views",
      FIELD(PVT_OPTION_TEXT, views),
      .placeholder = "all|above|FILE",
@@ -179,6 +188,7 @@ pvtGenerateOptions pvtDefaultGenerateOptions(void)
         .budget = build.budget,
         .resolution = build.resolution,
         .error = build.error,
+        .deadline = build.deadline,
         .tolerance = build.tolerance,
         .smallestHole = build.smallestHole,
         .up = (int)build.up,
@@ -200,6 +210,7 @@ pvtBuildOptions pvtGetBuildOptions(const pvtGenerateOptions* options, const pvtV
     build.budget = options->budget;
     build.resolution = options->resolution;
     build.error = options->error;
+    build.deadline = options->deadline;
     build.tolerance = options->tolerance;
     build.smallestHole = options->smallestHole;
     build.ground = options->ground;

@@ -96,6 +96,9 @@ static bool IsSet(const pvtOption* option, const pvtGenerateOptions* options)
     if (strcmp(option->name, "error") == 0) {
         return options->error > 0.0;
     }
+    if (strcmp(option->name, "deadline") == 0) {
+        return options->deadline > 0.0;
+    }
     if (strcmp(option->name, "resolution") == 0) {
         return options->error == 0.0;
     }

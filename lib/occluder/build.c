@@ -14,8 +14,8 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
                            pvtOccluder* occluder, pvtBuildStats* stats)
 {
     *occluder = (pvtOccluder){0};
-    pvtBuild build = {.options = options, .mesh = mesh};
     const double started = pvtGetSeconds();
+    pvtBuild build = {.options = options, .mesh = mesh, .started = started};
     const NamedStep steps[] = {
         // Lengths in voxels and in world units settle each other.
         {"sizes", pvtResolveSizes, &build.stats.seconds.voxelize},

@@ -97,6 +97,13 @@ static pvtStatus Climb(pvtContext* context, Refinement* refinement)
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
+        if (refinement->options->deadline > 0.0 &&
+            pvtGetSeconds() > refinement->options->deadline) {
+            pvtLog(context, PVT_LOG_WARNING,
+                   "the deadline ended the refinement after %.0f %% of its trials",
+                   100.0 * (1.0 - rest));
+            break;
+        }
         pvtReportProgress(context, 1.0 - rest);
     }
     return PVT_OK;

@@ -9,7 +9,8 @@ typedef struct pvtRefineOptions {
     const pvtViewSet* views; ///< borrowed
     pvtBox3 bounds;          ///< [wu] what the masks span
     uint64_t seed;
-    int trials; ///< changes that are tried
+    int trials;      ///< changes that are tried
+    double deadline; ///< on pvtGetSeconds' clock: ends the trials; 0: none
 } pvtRefineOptions;
 
 /// Changes panels at random for as long as that raises the measure: points move as far as the

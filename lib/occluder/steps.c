@@ -63,6 +63,11 @@ static pvtStatus CheckRanges(pvtContext* context, const pvtBuildOptions* options
                        "resolution is %d voxels; it must be %d to %d", options->resolution,
                        MIN_RESOLUTION, MAX_RESOLUTION);
     }
+    if (!isfinite(options->deadline) || options->deadline < 0.0) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT,
+                       "the deadline is %g s; it must be finite and not negative",
+                       options->deadline);
+    }
     if (!isfinite(options->error) || options->error < 0.0) {
         return pvtFail(context, PVT_INVALID_ARGUMENT, "the error must be above 0 and finite");
     }
@@ -362,11 +367,14 @@ pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
     }
     static const int trials[] = {
         [PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000};
+    const double deadline =
+        build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
     const pvtRefineOptions options = {.budget = build->options->budget,
                                       .views = &build->views,
                                       .bounds = build->bounds,
                                       .seed = build->options->seed,
-                                      .trials = trials[build->options->effort]};
+                                      .trials = trials[build->options->effort],
+                                      .deadline = deadline};
     return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
                              &build->occluder);
 }

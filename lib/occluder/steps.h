@@ -9,6 +9,7 @@
 typedef struct pvtBuild {
     const pvtBuildOptions* options;
     const pvtMesh* mesh;
+    double started; ///< on pvtGetSeconds' clock
     pvtBuildStats stats;
     pvtBitGrid surface;
     pvtSolid solid;

@@ -9,7 +9,7 @@ const fields = {
     candidates: "count", outside: "count", seconds: "object", peak_bytes: "count",
     options: "object", warnings: "array",
 };
-const options = ["convention", "budget", "resolution", "error", "tolerance", "method", "effort",
+const options = ["convention", "budget", "resolution", "error", "tolerance", "method", "effort", "deadline",
     "views", "seed", "smallest_hole", "ground", "terrain", "up", "enclosed", "scene", "node", "masked",
     "slicer", "threads", "memory_limit"];
 const stages = ["load", "voxelize", "solid", "sections", "chains", "select", "refine", "check", "preview",

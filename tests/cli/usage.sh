@@ -55,7 +55,7 @@ only
 
 expect 0 "" generate --help
 for option in output budget resolution error tolerance smallest-hole ground terrain up enclosed \
-    method effort views slicer threads seed memory-limit stats preview convention scene node masked \
+    method effort deadline views slicer threads seed memory-limit stats preview convention scene node masked \
     progress quiet verbose help; do
     holds "generate --help tells of --$option" grep -qE -- "--$option( |\$)" out
 done

@@ -116,6 +116,8 @@ typedef struct pvtBuildOptions {
     pvtEffort effort;       ///< default PVT_EFFORT_DEFAULT; the paper's way takes no notice of it
     pvtViewOptions views;   ///< what to optimise for; `up` follows the field above
     uint64_t seed;          ///< default 1
+    double deadline; ///< [s] > 0: when so much time has passed since the start, refinement ends
+                     ///< with the best so far, which then depends on the machine; default 0
     /// Null: slices are made on the CPU. Else called once the voxel mesh is there, to make the
     /// slicer that the build uses; `release` ends it.
     pvtStatus (*createSlicer)(pvtContext* context, void* user, const pvtGridFrame* frame,
