@@ -3,6 +3,7 @@
 
 #include "base/context.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum { MAX_WORDS = PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64, LAYERS = 3 };
@@ -91,6 +92,7 @@ static void ComposeMask(const pvtArrangement* arrangement, const pvtChange* chan
     first = first != NULL ? first + mask * words : NULL;
     const uint64_t* second = change->count > 1 ? arrangement->panels[change->slots[1]].masks : NULL;
     second = second != NULL ? second + mask * words : NULL;
+    assert(change->count == 1 || change->count == 2);
     uint64_t drawn[2][MAX_WORDS];
     for (int i = 0; i < change->count; ++i) {
         DrawPanel(arrangement, mask, &change->panels[i], drawn[i]);

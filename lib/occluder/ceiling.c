@@ -36,7 +36,7 @@ static uint64_t GetBorderWord(const pvtBitGrid* grid, size_t word, int y, int z)
     const size_t slab = (size_t)grid->frame.size[1] * perRow;
     const uint64_t left = here << 1 | (word > 0 ? words[word - 1] >> 63 : 0);
     const uint64_t right = here >> 1 | (word + 1 < perRow ? words[word + 1] << 63 : 0);
-    const uint64_t below = y > 0 ? words[word - perRow] : 0;
+    const uint64_t below = y > 0 ? *(words + word - perRow) : 0;
     const uint64_t above = y + 1 < grid->frame.size[1] ? (words + perRow)[word] : 0;
     const uint64_t front = z > 0 ? *(words + word - slab) : 0;
     const uint64_t back = z + 1 < grid->frame.size[2] ? (words + slab)[word] : 0;
@@ -60,9 +60,11 @@ static size_t ListBorder(const pvtBitGrid* grid, int splits, pvtVec3* points)
                 for (; border != 0; border &= border - 1) {
                     const int x = (int)(word * 64) + __builtin_ctzll(border);
                     for (int part = 0; part < each; ++part) {
+                        const int row = part / splits;
+                        const int layer = row / splits;
                         const double dx = (part % splits + 0.5) / splits;
-                        const double dy = (part / splits % splits + 0.5) / splits;
-                        const double dz = (part / splits / splits + 0.5) / splits;
+                        const double dy = (row % splits + 0.5) / splits;
+                        const double dz = (layer + 0.5) / splits;
                         points[count++] =
                             pvtAdd(grid->frame.origin,
                                    (pvtVec3){(x + dx) * h, (y + dy) * h, (z + dz) * h});
