@@ -97,8 +97,9 @@ static void PrintOption(FILE* file, const pvtOption* option, const void* default
 
 void pvtPrintHelp(FILE* file, const pvtSyntax* syntax, const void* defaults)
 {
-    fprintf(file, "paravent %s - %s\n\n", syntax->name, syntax->summary);
-    fprintf(file, "Usage: paravent %s %s [options]\n\n", syntax->name, syntax->operands);
+    fprintf(file, "%s %s - %s\n\n", pvtSyntax_GetProgram(syntax), syntax->name, syntax->summary);
+    fprintf(file, "Usage: %s %s %s [options]\n\n", pvtSyntax_GetProgram(syntax), syntax->name,
+            syntax->operands);
     pvtPrintWrapped(file, syntax->operandHelp, 2, 0);
     for (size_t group = 0; group < syntax->groupCount; ++group) {
         fprintf(file, "\n%s:\n", syntax->groups[group].title);

@@ -122,8 +122,8 @@ static bool RefuseUnknown(Parser* parser, const char* word, size_t length)
         return Refuse(parser, "unknown option %.*s; did you mean --%s?", (int)length, word,
                       similar);
     }
-    return Refuse(parser, "unknown option %.*s; 'paravent %s --help' lists them", (int)length, word,
-                  parser->syntax->name);
+    return Refuse(parser, "unknown option %.*s; '%s %s --help' lists them", (int)length, word,
+                  pvtSyntax_GetProgram(parser->syntax), parser->syntax->name);
 }
 
 // Whether the word may be taken for a value: not when it looks like the next option.
@@ -178,8 +178,8 @@ static bool AddOperand(Parser* parser, const char* word)
 {
     const pvtSyntax* syntax = parser->syntax;
     if (parser->line->operandCount == syntax->mostOperands) {
-        return Refuse(parser, "'%s' is one argument too many; usage: paravent %s %s [options]",
-                      word, syntax->name, syntax->operands);
+        return Refuse(parser, "'%s' is one argument too many; usage: %s %s %s [options]", word,
+                      pvtSyntax_GetProgram(syntax), syntax->name, syntax->operands);
     }
     parser->line->operands[parser->line->operandCount++] = word;
     return true;
@@ -189,21 +189,27 @@ static bool CheckComplete(Parser* parser)
 {
     const pvtSyntax* syntax = parser->syntax;
     if (parser->line->operandCount < syntax->leastOperands) {
-        return Refuse(parser, "%s is missing; usage: paravent %s %s [options]",
-                      parser->line->operandCount == 0 ? "the input file" : "a file", syntax->name,
-                      syntax->operands);
+        return Refuse(parser, "%s is missing; usage: %s %s %s [options]",
+                      parser->line->operandCount == 0 ? "the input file" : "a file",
+                      pvtSyntax_GetProgram(syntax), syntax->name, syntax->operands);
     }
     const pvtOption* option = NULL;
     for (size_t i = 0; (option = GetOption(syntax, i)) != NULL; ++i) {
         if (option->isRequired && (parser->line->given >> i & 1) == 0) {
             const char letter[] = {option->letter, '\0'};
             const bool hasLetter = option->letter != 0;
-            return Refuse(parser, "-%s%s %s is missing; usage: paravent %s %s [options]",
+            return Refuse(parser, "-%s%s %s is missing; usage: %s %s %s [options]",
                           hasLetter ? "" : "-", hasLetter ? letter : option->name,
-                          option->placeholder, syntax->name, syntax->operands);
+                          option->placeholder, pvtSyntax_GetProgram(syntax), syntax->name,
+                          syntax->operands);
         }
     }
     return true;
+}
+
+const char* pvtSyntax_GetProgram(const pvtSyntax* syntax)
+{
+    return syntax->program != NULL ? syntax->program : "paravent";
 }
 
 bool pvtParseLine(const pvtSyntax* syntax, int count, char* const* words, void* values,

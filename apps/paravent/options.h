@@ -41,6 +41,7 @@ typedef struct pvtOptionGroup {
 
 /// One subcommand's line, as a table.
 typedef struct pvtSyntax {
+    const char* program;  ///< null: "paravent"
     const char* name;     ///< "generate"
     const char* summary;  ///< one line
     const char* operands; ///< "INPUT -o OUTPUT", for the usage line
@@ -61,6 +62,9 @@ typedef struct pvtParsedLine {
     uint64_t given;                    ///< bit i: option i, counted through all groups
     char message[PVT_USAGE_TEXT_SIZE]; ///< what is wrong
 } pvtParsedLine;
+
+/// What the texts call the program.
+const char* pvtSyntax_GetProgram(const pvtSyntax* syntax);
 
 /// Reads `count` words into the fields of `values`, which hold the defaults. `operands` of the line
 /// is the caller's. An option given twice: the last one holds. False with a

@@ -89,7 +89,7 @@ bool pvtReadCommandLine(const pvtSyntax* syntax, int count, char* const* words, 
         }
     }
     if (!pvtParseLine(syntax, count, words, values, line)) {
-        fprintf(stderr, "paravent %s: %s\n", syntax->name, line->message);
+        fprintf(stderr, "%s %s: %s\n", pvtSyntax_GetProgram(syntax), syntax->name, line->message);
         *exitCode = PVT_EXIT_USAGE;
         return false;
     }
