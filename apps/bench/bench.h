@@ -11,10 +11,31 @@
 
 enum { PVT_MOST_MODELS = 64 };
 
-typedef struct pvtQualityLine {
+/// What makes an occluder, for every subcommand: the first member of its options struct.
+typedef struct pvtBenchLine {
     pvtCommonOptions common;
     int budget, resolution;
     pvtLength tolerance, smallestHole;
+    bool ground, terrain;
+    int up, enclosed;
+} pvtBenchLine;
+
+/// --budget, --resolution and so on, as of paravent generate.
+extern const pvtOption pvtBenchOptionTable[];
+enum { PVT_BENCH_OPTION_COUNT = 8 };
+
+pvtBenchLine pvtDefaultBenchLine(void);
+pvtBuildOptions pvtGetBenchBuildOptions(const pvtBenchLine* line, pvtMethod method);
+
+/// Where an occluder of the mesh may lie, at a resolution that need not be the line's.
+pvtStatus pvtMakeBenchGrid(pvtRun* run, const pvtBenchLine* line, int resolution,
+                           const pvtMesh* mesh, pvtBitGrid* allowed);
+
+/// A path's last part.
+const char* pvtGetFileName(const char* path);
+
+typedef struct pvtQualityLine {
+    pvtBenchLine bench;
     int views, quads, pixels;
     uint64_t seed;
 } pvtQualityLine;
@@ -22,7 +43,7 @@ typedef struct pvtQualityLine {
 /// A way to an occluder of at most line->budget triangles. PVT_NOTHING_INSIDE is a result too.
 typedef struct pvtBenchMethod {
     const char* name;
-    pvtStatus (*make)(pvtRun* run, const pvtQualityLine* line, const pvtMesh* model,
+    pvtStatus (*make)(pvtRun* run, const pvtBenchLine* line, const pvtMesh* model,
                       pvtMesh* occluder);
 } pvtBenchMethod;
 
@@ -30,5 +51,6 @@ enum { PVT_BENCH_METHOD_COUNT = 5 };
 extern const pvtBenchMethod pvtBenchMethods[PVT_BENCH_METHOD_COUNT];
 
 extern const pvtCommand pvtQualityCommand;
+extern const pvtCommand pvtSpeedCommand;
 
 #endif

@@ -4,24 +4,11 @@
 // no occluder within them can surpass.
 #include "bench.h"
 
-#include <math.h>
 #include <meshoptimizer.h>
-#include <paravent/voxel.h>
 #include <stdlib.h>
 
 // The error that a simplification may reach: none is too large, the budget decides.
 static const float ANY_ERROR = 1e9f;
-
-static pvtBuildOptions GetBuildOptions(const pvtQualityLine* line, pvtMethod method)
-{
-    pvtBuildOptions options = pvtDefaultBuildOptions();
-    options.budget = line->budget;
-    options.resolution = line->resolution;
-    options.tolerance = line->tolerance;
-    options.smallestHole = line->smallestHole;
-    options.method = method;
-    return options;
-}
 
 static pvtStatus Build(pvtRun* run, const pvtBuildOptions* options, const pvtMesh* model,
                        pvtMesh* mesh)
@@ -36,17 +23,17 @@ static pvtStatus Build(pvtRun* run, const pvtBuildOptions* options, const pvtMes
     return status;
 }
 
-static pvtStatus BuildPlanar(pvtRun* run, const pvtQualityLine* line, const pvtMesh* model,
+static pvtStatus BuildPlanar(pvtRun* run, const pvtBenchLine* line, const pvtMesh* model,
                              pvtMesh* mesh)
 {
-    const pvtBuildOptions options = GetBuildOptions(line, PVT_METHOD_PLANAR);
+    const pvtBuildOptions options = pvtGetBenchBuildOptions(line, PVT_METHOD_PLANAR);
     return Build(run, &options, model, mesh);
 }
 
-static pvtStatus BuildPaper(pvtRun* run, const pvtQualityLine* line, const pvtMesh* model,
+static pvtStatus BuildPaper(pvtRun* run, const pvtBenchLine* line, const pvtMesh* model,
                             pvtMesh* mesh)
 {
-    const pvtBuildOptions options = GetBuildOptions(line, PVT_METHOD_PAPER);
+    const pvtBuildOptions options = pvtGetBenchBuildOptions(line, PVT_METHOD_PAPER);
     return Build(run, &options, model, mesh);
 }
 
@@ -61,7 +48,7 @@ static size_t Simplify(const pvtMesh* mesh, const float* points, size_t target, 
 }
 
 // Welded first, since meshoptimizer keeps the edges where positions are not shared.
-static pvtStatus SimplifyWelded(pvtRun* run, const pvtQualityLine* line, const pvtMesh* welded,
+static pvtStatus SimplifyWelded(pvtRun* run, const pvtBenchLine* line, const pvtMesh* welded,
                                 bool isSloppy, pvtMesh* mesh)
 {
     float* points = calloc(3 * welded->positionCount, sizeof *points);
@@ -83,7 +70,7 @@ static pvtStatus SimplifyWelded(pvtRun* run, const pvtQualityLine* line, const p
     return status;
 }
 
-static pvtStatus RunMeshoptimizer(pvtRun* run, const pvtQualityLine* line, const pvtMesh* model,
+static pvtStatus RunMeshoptimizer(pvtRun* run, const pvtBenchLine* line, const pvtMesh* model,
                                   bool isSloppy, pvtMesh* mesh)
 {
     pvtMesh welded;
@@ -95,60 +82,26 @@ static pvtStatus RunMeshoptimizer(pvtRun* run, const pvtQualityLine* line, const
     return status;
 }
 
-static pvtStatus RunSimplify(pvtRun* run, const pvtQualityLine* line, const pvtMesh* model,
+static pvtStatus RunSimplify(pvtRun* run, const pvtBenchLine* line, const pvtMesh* model,
                              pvtMesh* mesh)
 {
     return RunMeshoptimizer(run, line, model, false, mesh);
 }
 
-static pvtStatus RunSloppy(pvtRun* run, const pvtQualityLine* line, const pvtMesh* model,
+static pvtStatus RunSloppy(pvtRun* run, const pvtBenchLine* line, const pvtMesh* model,
                            pvtMesh* mesh)
 {
     return RunMeshoptimizer(run, line, model, true, mesh);
 }
 
-static double ToWorld(pvtLength length, double voxelSize)
-{
-    return length.inVoxels ? length.value * voxelSize : length.value;
-}
-
-static pvtStatus WrapAllowed(pvtRun* run, const pvtBitGrid* surface, double hole, double tolerance,
-                             pvtMesh* mesh)
-{
-    pvtSolidOptions options = pvtDefaultSolidOptions();
-    options.smallestHole = hole;
-    pvtSolid solid;
-    pvtBitGrid allowed = {0};
-    pvtStatus status = pvtFillSolid(run->context, &options, surface, &solid);
-    if (status != PVT_OK) {
-        return status;
-    }
-    status = pvtMakeAllowedGrid(run->context, &solid, tolerance, &allowed);
-    if (status == PVT_OK) {
-        status = pvtBuildVoxelMesh(run->context, &allowed, mesh);
-    }
-    pvtBitGrid_Free(run->context, &allowed);
-    pvtSolid_Free(run->context, &solid);
-    return status;
-}
-
-static pvtStatus WrapVoxels(pvtRun* run, const pvtQualityLine* line, const pvtMesh* model,
+static pvtStatus WrapVoxels(pvtRun* run, const pvtBenchLine* line, const pvtMesh* model,
                             pvtMesh* mesh)
 {
-    const pvtBox3 bounds = pvtMesh_GetBounds(model);
-    const double longest =
-        fmax(bounds.upper.x - bounds.lower.x,
-             fmax(bounds.upper.y - bounds.lower.y, bounds.upper.z - bounds.lower.z));
-    const double hole = ToWorld(line->smallestHole, longest / line->resolution);
-    const double tolerance = ToWorld(line->tolerance, longest / line->resolution);
-    pvtVoxelizeOptions options = pvtDefaultVoxelizeOptions();
-    options.resolution = line->resolution;
-    options.padding = fmax(hole, tolerance);
-    pvtBitGrid surface;
-    pvtStatus status = pvtVoxelizeMesh(run->context, &options, model, &surface);
+    pvtBitGrid allowed;
+    pvtStatus status = pvtMakeBenchGrid(run, line, line->resolution, model, &allowed);
     if (status == PVT_OK) {
-        status = WrapAllowed(run, &surface, hole, tolerance, mesh);
-        pvtBitGrid_Free(run->context, &surface);
+        status = pvtBuildVoxelMesh(run->context, &allowed, mesh);
+        pvtBitGrid_Free(run->context, &allowed);
     }
     return status;
 }

@@ -4,34 +4,8 @@
 
 #include <paravent/io.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtQualityLine, field)
-
-static const pvtOption occluderTable[] = {
-    {.name = "budget",
-     FIELD(PVT_OPTION_INT, budget),
-     .placeholder = "N",
-     .least = 1,
-     .most = 65535,
-     .help = "most triangles, for all methods but the voxel mesh"},
-    {.name = "resolution",
-     FIELD(PVT_OPTION_INT, resolution),
-     .placeholder = "N",
-     .least = 8,
-     .most = 2048,
-     .help = "voxels along the longest side"},
-    {.name = "tolerance",
-     FIELD(PVT_OPTION_LENGTH, tolerance),
-     .placeholder = "T",
-     .most = 1e30,
-     .help = "as of paravent generate"},
-    {.name = "smallest-hole",
-     FIELD(PVT_OPTION_LENGTH, smallestHole),
-     .placeholder = "D",
-     .most = 1e30,
-     .help = "as of paravent generate"},
-};
 
 static const pvtOption samplingTable[] = {
     {.name = "views",
@@ -60,12 +34,13 @@ static const pvtOption samplingTable[] = {
 };
 
 static const pvtOptionGroup groups[] = {
-    {"Occluders", occluderTable, sizeof occluderTable / sizeof *occluderTable},
+    {"Occluders", pvtBenchOptionTable, PVT_BENCH_OPTION_COUNT},
     {"Sampling", samplingTable, sizeof samplingTable / sizeof *samplingTable},
     {"General", pvtCommonOptionTable, PVT_COMMON_OPTION_COUNT},
 };
 
 static const pvtSyntax syntax = {
+    .program = "paravent-bench",
     .name = "quality",
     .summary = "compare occluders by several methods, on the same budget",
     .operands = "MODEL...",
@@ -78,12 +53,8 @@ static const pvtSyntax syntax = {
 
 static pvtQualityLine GetDefaultLine(void)
 {
-    const pvtBuildOptions build = pvtDefaultBuildOptions();
     const pvtEvaluateOptions evaluate = pvtDefaultEvaluateOptions();
-    return (pvtQualityLine){.budget = build.budget,
-                            .resolution = build.resolution,
-                            .tolerance = build.tolerance,
-                            .smallestHole = build.smallestHole,
+    return (pvtQualityLine){.bench = pvtDefaultBenchLine(),
                             .views = evaluate.views,
                             .quads = evaluate.quads,
                             .pixels = evaluate.pixels,
@@ -99,7 +70,7 @@ typedef struct Contest {
 // The voxel mesh is the last, and has no budget.
 static bool IsOverBudget(const pvtQualityLine* line, size_t method, size_t triangles)
 {
-    return method + 1 < PVT_BENCH_METHOD_COUNT && triangles > (size_t)line->budget;
+    return method + 1 < PVT_BENCH_METHOD_COUNT && triangles > (size_t)line->bench.budget;
 }
 
 static void PrintContest(const pvtQualityLine* line, const char* path,
@@ -107,8 +78,7 @@ static void PrintContest(const pvtQualityLine* line, const char* path,
 {
     bool isAnyOver = false;
     char count[32];
-    const char* slash = strrchr(path, '/');
-    printf("\n%s, %s triangles\n", slash != NULL ? slash + 1 : path,
+    printf("\n%s, %s triangles\n", pvtGetFileName(path),
            pvtFormatCount(evaluation->originalTriangleCount, count));
     printf("%-21s %9s  %9s %9s  %9s %9s  %8s  %7s\n", "method", "triangles", "precision", "recall",
            "precision", "recall", "coverage", "seconds");
@@ -132,7 +102,8 @@ static pvtStatus MakeOccluders(pvtRun* run, const pvtQualityLine* line, const pv
 {
     for (size_t i = 0; i < PVT_BENCH_METHOD_COUNT; ++i) {
         const double began = pvtGetClock();
-        const pvtStatus status = pvtBenchMethods[i].make(run, line, model, &contest->occluders[i]);
+        const pvtStatus status =
+            pvtBenchMethods[i].make(run, &line->bench, model, &contest->occluders[i]);
         contest->seconds[i] = pvtGetClock() - began;
         if (status == PVT_NOTHING_INSIDE) {
             pvtReport_Warn(&run->report, "%s: %s", pvtBenchMethods[i].name,
@@ -196,10 +167,10 @@ static int RunQuality(int count, char* const* words)
     int exitCode = PVT_EXIT_DONE;
     if (pvtReadCommandLine(&syntax, count, words, &values, &line, &exitCode)) {
         pvtRun run;
-        pvtStatus status = pvtBeginRun(&values.common, &run);
+        pvtStatus status = pvtBeginRun(&values.bench.common, &run);
         if (status == PVT_OK) {
             printf("budget %d triangles; %d views; first uniform quads, then small ones\n",
-                   values.budget, values.views);
+                   values.bench.budget, values.views);
         }
         for (int i = 0; i < line.operandCount && status == PVT_OK; ++i) {
             status = RunModel(&run, &values, operands[i]);
