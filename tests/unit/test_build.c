@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "check.h"
 
-#include "base/context.h"
 #include "base/vector.h"
+#include "voxel_shapes.h"
 
 #include <math.h>
 #include <paravent/occluder.h>
 #include <string.h>
-
-// A box with two triangles a side, wound outwards.
-static void MakeBox(pvtContext* context, pvtVec3 lower, pvtVec3 upper, pvtMesh* mesh)
-{
-    pvtVec3 corners[8];
-    for (int i = 0; i < 8; ++i) {
-        corners[i] = (pvtVec3){i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y,
-                               i & 4 ? upper.z : lower.z};
-    }
-    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    uint32_t indices[36];
-    for (int q = 0; q < 6; ++q) {
-        const uint32_t* c = quads[q];
-        const uint32_t two[6] = {c[0], c[1], c[2], c[0], c[2], c[3]};
-        memcpy(indices + 6 * q, two, sizeof two);
-    }
-    CHECK_OK(context, pvtCreateMesh(context, corners, 8, indices, 12, mesh));
-}
 
 // A ring that lies flat: 24 by 12 quads.
 static void MakeTorus(pvtContext* context, pvtMesh* mesh)
@@ -66,7 +47,7 @@ static void a_cube_at_twelve_triangles_is_covered_but_for_two_voxels(void** stat
     (void)state;
     pvtContext* context = CreateTestContext(2);
     pvtMesh cube;
-    MakeBox(context, (pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &cube);
+    MakeBoxMesh(context, (pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &cube);
     pvtBuildOptions options = GetQuickOptions();
     options.budget = 12;
     pvtOccluder occluder;
@@ -177,7 +158,7 @@ static void an_error_sets_the_voxel_size_that_keeps_it(void** state)
     (void)state;
     pvtContext* context = CreateTestContext(1);
     pvtMesh box;
-    MakeBox(context, (pvtVec3){0, 0, 0}, (pvtVec3){4, 2, 2}, &box);
+    MakeBoxMesh(context, (pvtVec3){0, 0, 0}, (pvtVec3){4, 2, 2}, &box);
     pvtBuildOptions options = GetQuickOptions();
     options.error = 0.2;
     static const pvtLength tolerances[] = {{0.0, true}, {1.0, true}, {0.05, false}};
