@@ -4,6 +4,7 @@
 #include "values.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,36 +49,74 @@ static const char* ReadLine(char* line, pvtWeightedDirection* view, bool* isEmpt
     return NULL;
 }
 
+// Reads up to the end of the line or the file. Null when that went well; *isEnd when nothing was
+// left to read.
+static const char* TakeLine(FILE* file, char line[LINE_SIZE], bool* isEnd)
+{
+    size_t length = 0;
+    int letter = fgetc(file);
+    *isEnd = letter == EOF;
+    for (; letter != EOF && letter != '\n'; letter = fgetc(file)) {
+        if (letter == '\0') {
+            return "this is not a text: it holds a byte of 0";
+        }
+        if (length + 1 == LINE_SIZE) {
+            return "the line is too long";
+        }
+        line[length++] = (char)letter;
+    }
+    line[length] = '\0';
+    return NULL;
+}
+
+// Directions of about length 1 and weights up to 1, so that whatever the numbers were, neither
+// squares nor sums of them overflow.
+static void ScaleViews(pvtViewList* list, double largestWeight)
+{
+    for (size_t i = 0; i < list->count; ++i) {
+        pvtWeightedDirection* view = &list->directions[i];
+        const pvtVec3 d = view->direction;
+        const double length = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
+        view->direction = (pvtVec3){d.x / length, d.y / length, d.z / length};
+        view->weight /= largestWeight;
+    }
+}
+
 static pvtStatus ReadLines(pvtRun* run, FILE* file, const char* path, pvtViewList* list)
 {
     char line[LINE_SIZE];
-    double weights = 0.0;
-    for (int number = 1; fgets(line, sizeof line, file) != NULL; ++number) {
-        if (strlen(line) + 1 == sizeof line) {
-            return RefuseLine(run, path, number, "the line is too long");
+    double largestWeight = 0.0;
+    bool isEnd = false;
+    for (int number = 1;; ++number) {
+        const char* reason = TakeLine(file, line, &isEnd);
+        if (reason == NULL && isEnd) {
+            break;
         }
-        if (list->count == PVT_MAX_LISTED_VIEWS) {
-            return RefuseLine(run, path, number, "more than 4096 directions");
-        }
+        pvtWeightedDirection view;
         bool isEmpty = false;
-        pvtWeightedDirection* view = &list->directions[list->count];
-        const char* reason = ReadLine(line, view, &isEmpty);
+        if (reason == NULL) {
+            reason = ReadLine(line, &view, &isEmpty);
+        }
+        if (reason == NULL && !isEmpty && list->count == PVT_MAX_LISTED_VIEWS) {
+            reason = "more than 4096 directions";
+        }
         if (reason != NULL) {
             return RefuseLine(run, path, number, reason);
         }
         if (!isEmpty) {
-            weights += view->weight;
-            ++list->count;
+            largestWeight = fmax(largestWeight, view.weight);
+            list->directions[list->count++] = view;
         }
     }
     if (ferror(file) != 0) {
         return pvtRun_Fail(run, PVT_INVALID_INPUT, "--views %s cannot be read: %s", path,
                            strerror(errno));
     }
-    if (weights <= 0.0) {
+    if (largestWeight <= 0.0) {
         return pvtRun_Fail(run, PVT_INVALID_INPUT, "%s: no direction has a weight above 0; %s",
                            path, shape);
     }
+    ScaleViews(list, largestWeight);
     return PVT_OK;
 }
 

@@ -35,6 +35,16 @@ printf '0 1 0 0 # none\n' >views.txt
 expect 2 "views.txt: no direction has a weight" generate boulder.glb -o out.glb --views views.txt
 head -c 5000 /dev/zero | tr '\0' '1' >views.txt
 expect 2 "views.txt:1: the line is too long" generate boulder.glb -o out.glb --views views.txt
+printf '0 1 0 1\n\0\n' >views.txt
+expect 2 "views.txt:2: this is not a text" generate boulder.glb -o out.glb --views views.txt
+expect 2 "/dev/zero:1: this is not a text" generate boulder.glb -o out.glb --views /dev/zero
+# Numbers whose squares and sums are beyond what a double holds.
+printf '1e200 0 0 1e308\n0 1e-200 0 1e308' >views.txt
+expect 0 "" generate boulder.glb -o large.glb --views views.txt --resolution 16 --budget 6
+printf '1 0 0 1\n0 1 0 1\n' >views.txt
+expect 0 "" generate boulder.glb -o plain.glb --views views.txt --resolution 16 --budget 6
+holds "only the directions and the proportion of the weights matter" cmp large.glb plain.glb
+rm large.glb plain.glb
 expect 2 "--views . cannot be read" generate boulder.glb -o out.glb --views .
 
 expect 5 "sheet.glb: nothing is inside" generate "$models/sheet.glb" -o out.glb --resolution 32
