@@ -79,6 +79,12 @@ static bool OpenFile(pvtOutput* output, const char* path)
         output->error = output->file == NULL ? errno : 0;
         return output->file != NULL;
     }
+    // Renaming over it would work, but who made it read-only, as version control does with what is
+    // not checked out, does not want it replaced.
+    if (access(path, W_OK) != 0 && errno != ENOENT) {
+        output->error = errno;
+        return false;
+    }
     output->temporary = pvtAllocate(output->context, strlen(path) + TEMPORARY_SUFFIX, 1);
     if (output->temporary == NULL) {
         output->error = ENOMEM;

@@ -19,6 +19,11 @@ if [ "$(id -u)" != 0 ]; then
     mkdir locked && chmod a-w locked
     expect 4 "locked/out.glb cannot be written: Permission denied" generate in.glb "${quick[@]}" -o locked/out.glb
     rmdir locked
+    printf 'old' >kept.glb
+    chmod a-w kept.glb
+    expect 4 "kept.glb cannot be written: Permission denied" generate in.glb "${quick[@]}" -o kept.glb
+    holds "a read-only file stays as it was" grep -qx old kept.glb
+    rm -f kept.glb
 fi
 only in.glb
 
