@@ -187,13 +187,15 @@ static void PrintSeconds(pvtRun* run, const pvtGenerated* generated)
 void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGenerated* generated)
 {
     const pvtBuildStats* stats = &generated->stats;
+    const size_t triangles = generated->occluder.mesh.triangleCount;
     const size_t polygons = generated->occluder.loops.loopCount;
+    const size_t trianglesIn = generated->model.mesh.triangleCount;
     char in[32];
     char out[32];
-    pvtReport_Say(&run->report, "%s: %s triangles in %zu polygon%s, made from %s triangles",
-                  options->output, pvtFormatCount(generated->occluder.mesh.triangleCount, out),
-                  polygons, polygons == 1 ? "" : "s",
-                  pvtFormatCount(generated->model.mesh.triangleCount, in));
+    pvtReport_Say(&run->report, "%s: %s triangle%s in %zu polygon%s, made from %s triangle%s",
+                  options->output, pvtFormatCount(triangles, out), triangles == 1 ? "" : "s",
+                  polygons, polygons == 1 ? "" : "s", pvtFormatCount(trianglesIn, in),
+                  trianglesIn == 1 ? "" : "s");
     if (stats->measureOfSolid > 0.0) {
         pvtReport_Say(&run->report, "  measure      %.1f %% of the solid's",
                       100.0 * stats->measure / stats->measureOfSolid);

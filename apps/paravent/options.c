@@ -178,8 +178,10 @@ static bool AddOperand(Parser* parser, const char* word)
 {
     const pvtSyntax* syntax = parser->syntax;
     if (parser->line->operandCount == syntax->mostOperands) {
-        return Refuse(parser, "'%s' is one argument too many; usage: %s %s %s [options]", word,
-                      pvtSyntax_GetProgram(syntax), syntax->name, syntax->operands);
+        return Refuse(parser,
+                      "'%s' is one argument too many: there can be %d; usage: %s %s %s [options]",
+                      word, syntax->mostOperands, pvtSyntax_GetProgram(syntax), syntax->name,
+                      syntax->operands);
     }
     parser->line->operands[parser->line->operandCount++] = word;
     return true;

@@ -277,9 +277,14 @@ class Checker
     void CheckChoice(const Json& value, const std::string& choices, const std::string& place) const
     {
         const std::string text = value.is_string() ? value.get<std::string>() : "";
-        if (text.empty() || choices.find("|" + text + "|") == std::string::npos) {
+        if (text.empty() || text.find('|') != std::string::npos ||
+            choices.find("|" + text + "|") == std::string::npos) {
+            std::string listed;
+            for (size_t i = 1; i + 1 < choices.size(); ++i) {
+                listed += choices[i] == '|' ? std::string(", ") : std::string(1, choices[i]);
+            }
             Refuse(job_, "%s is %s; it must be one of %s", place.c_str(),
-                   Clean(value.dump()).c_str(), choices.c_str());
+                   Clean(value.dump()).c_str(), listed.c_str());
         }
     }
 
