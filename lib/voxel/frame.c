@@ -12,8 +12,9 @@
 
 enum { MIN_PADDING = 2, MIN_RESOLUTION = 8, MAX_RESOLUTION = 2048 };
 
-// The solid that follows holds three grids; one more is at work.
-enum { GRIDS_OF_A_SOLID = 4 };
+// What a whole run holds at its peak, measured in grids: the solid that follows has three, one more
+// is at work, and sections, chains and polygons take as much again and a little more.
+enum { GRIDS_OF_A_RUN = 9 };
 
 pvtVoxelizeOptions pvtDefaultVoxelizeOptions(void)
 {
@@ -120,7 +121,7 @@ static void CountSides(pvtVec3 extent, double voxelSize, double padding, double 
     }
 }
 
-// The finest resolution whose solid fits in `bytes`; below the minimum when none does.
+// The finest resolution with which a run fits in `bytes`; below the minimum when none does.
 static int FindFittingResolution(pvtVec3 extent, double padding, double bytes)
 {
     int fits = MIN_RESOLUTION - 1;
@@ -129,7 +130,7 @@ static int FindFittingResolution(pvtVec3 extent, double padding, double bytes)
         const int middle = (fits + tooFine) / 2;
         double size[3];
         CountSides(extent, GetLongest(extent) / middle, padding, size);
-        if (CountBytes(size) * GRIDS_OF_A_SOLID <= bytes) {
+        if (CountBytes(size) * GRIDS_OF_A_RUN <= bytes) {
             fits = middle;
         } else {
             tooFine = middle;

@@ -52,6 +52,11 @@ expect 5 "--terrain" generate "$models/sheet.glb" -o out.glb --resolution 32
 expect 5 "--smallest-hole" generate "$models/tree.glb" -o out.glb --resolution 16
 expect 5 "--ground" generate "$models/house.glb" -o out.glb --resolution 16
 expect 6 "memory limit" generate boulder.glb -o out.glb --memory-limit 1M
+expect 6 "a resolution of" generate boulder.glb -o out.glb --resolution 2048 --memory-limit 10M
+fits="$(sed -n 's/.*a resolution of \([0-9]*\) would fit.*/\1/p' err)"
+expect 0 "" generate boulder.glb -o fits.glb --views "$here/one_view.txt" --budget 1 --effort fast \
+    --resolution "${fits:-0}" --memory-limit 10M
+rm -f fits.glb
 expect 6 "" generate boulder.glb -o out.glb --error 1e-9
 
 only boulder.glb cut.glb empty.glb folder.glb model.xyz points.obj text.gltf views.txt
