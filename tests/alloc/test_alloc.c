@@ -305,19 +305,19 @@ static void a_voxel_mesh_survives_every_refused_request(void** state)
 static void a_planar_build_survives_refused_requests(void** state)
 {
     (void)state;
-    CheckRequests(RunPlanarBuild, 1, 150);
+    CheckRequests(RunPlanarBuild, 1, 60);
 }
 
 static void a_paper_build_survives_refused_requests(void** state)
 {
     (void)state;
-    CheckRequests(RunPaperBuild, 1, 150);
+    CheckRequests(RunPaperBuild, 1, 60);
 }
 
 static void a_build_on_four_threads_survives_refused_requests(void** state)
 {
     (void)state;
-    CheckRequests(RunPlanarBuild, 4, 50);
+    CheckRequests(RunPlanarBuild, 4, 20);
 }
 
 static void a_context_survives_a_refused_request(void** state)

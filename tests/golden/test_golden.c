@@ -29,7 +29,7 @@ typedef struct Run {
     pvtViewSet views;
 } Run;
 
-enum { RESOLUTION = 24, BUDGET = 12, VIEWS = 4 };
+enum { RESOLUTION = 16, BUDGET = 12, VIEWS = 2 };
 static const double HOLE = 1.4; // [m] wider than the house's door and windows
 
 static uint64_t HashVec3(uint64_t hash, pvtVec3 v)
