@@ -17,6 +17,7 @@ enum {
 };
 
 static const double SQRT3 = 1.7320508075688772;
+static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
 
 pvtBuildOptions pvtDefaultBuildOptions(void)
 {
@@ -379,6 +380,27 @@ pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
                              &build->occluder);
 }
 
+// A strict interior may be a small part of what the mesh hides: a chair's legs are all surface.
+// Then recall is low whatever the budget, and only other options help.
+static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
+{
+    pvtBox3 bounds;
+    double hidden = 0.0;
+    if (build->stats.tolerance > 0.0 || !FindBounds(&build->solid.inside, &bounds)) {
+        return PVT_OK;
+    }
+    const pvtStatus status = pvtMeasureGrid(context, &build->views, &bounds, MEASURE_SIZE,
+                                            &build->solid.inside, &hidden);
+    if (status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "only %.1f %% of what the mesh hides lies strictly inside it at %d voxels, and an "
+               "occluder can hide no more; --tolerance 1vx uses the touched voxels too, a higher "
+               "--resolution finds thinner parts",
+               100.0 * build->stats.measureOfSolid / hidden, build->stats.resolution);
+    }
+    return status;
+}
+
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
 {
     pvtBuildStats* stats = &build->stats;
@@ -392,6 +414,9 @@ pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
     if (status == PVT_OK) {
         status = pvtMeasureGrid(context, &build->views, &build->bounds, MEASURE_SIZE,
                                 &build->allowed, &stats->measureOfSolid);
+    }
+    if (status == PVT_OK) {
+        status = CompareWithMesh(context, build);
     }
     return status;
 }

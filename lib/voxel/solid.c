@@ -77,17 +77,17 @@ static void WarnWhenHollow(pvtContext* context, const pvtSolid* solid)
     if (remedy->smallestHole > 0.0) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, because the surface has "
-               "openings; smallest-hole %g (%.1f voxels)%s would close it",
-               percent, remedy->smallestHole, voxels, remedy->ground ? " and ground" : "");
+               "openings; --smallest-hole %g (%.1f voxels)%s would close it",
+               percent, remedy->smallestHole, voxels, remedy->ground ? " and --ground" : "");
     } else if (remedy->ground) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "
-               "open below; ground would close it",
+               "open below; --ground would close it",
                percent);
     } else if (remedy->terrain) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, but the surface looks "
-               "like a landscape; terrain would fill what lies below",
+               "like a landscape; --terrain would fill what lies below",
                percent);
     }
 }

@@ -212,7 +212,7 @@ static void a_hollow_solid_is_warned_about_with_the_size_that_helps(void** state
     MakeShell(context, 20, 5.0, &surface);
     const pvtRemedy remedy = FindRemedy(context, &surface, pvtDefaultSolidOptions());
     char expected[64];
-    (void)snprintf(expected, sizeof expected, "smallest-hole %g ", remedy.smallestHole);
+    (void)snprintf(expected, sizeof expected, "--smallest-hole %g ", remedy.smallestHole);
     assert_non_null(strstr(warning, "hollow"));
     assert_non_null(strstr(warning, expected));
     pvtBitGrid_Free(context, &surface);
