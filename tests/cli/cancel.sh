@@ -3,14 +3,21 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 set -m # so that a background process is not started with SIGINT ignored
 
-limit="${PVT_CANCEL_LIMIT:-500}"
+limit=500 # ms
+resolution=512
+views=(--views all)
+if [ "${PVT_SANITIZED:-}" = 1 ]; then
+    limit=5000
+    resolution=128
+    views=(--views "$here/one_view.txt" --effort best)
+fi
 
 # stop SIGNAL STAGE: starts a long run and sends the signal when the stage has begun. Sets `code`
 # and `took` [ms].
 stop() {
     local signal="$1" stage="$2" pid began
-    "$PARAVENT" generate "$models/boulder.glb" -o out.glb --stats stats.json --resolution 512 \
-        --budget 2000 --threads 2 --progress json >out 2>err &
+    "$PARAVENT" generate "$models/boulder.glb" -o out.glb --stats stats.json "${views[@]}" \
+        --resolution "$resolution" --budget 300 --threads 2 --progress json >out 2>err &
     pid=$!
     for _ in $(seq 1200); do
         grep -q "\"stage\":\"$stage\"" err && break

@@ -5,7 +5,7 @@ set -uo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 models="$PVT_MODELS_FOLDER"
-quick=(--views "$here/one_view.txt" --resolution 16 --budget 6)
+quick=(--views "$here/one_view.txt" --resolution 16 --budget 6 --effort fast)
 scratch="$(mktemp -d)"
 trap 'chmod -R u+w "$scratch"; rm -rf "$scratch"' EXIT
 cd "$scratch" || exit 1

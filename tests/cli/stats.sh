@@ -9,7 +9,7 @@ check_stats() {
 }
 for model in boulder torus house; do
     expect 0 "" generate "$models/$model.glb" -o out.glb --stats stats.json --resolution 32 \
-        --budget 20 --tolerance 1vx --ground --views "$here/one_view.txt"
+        --budget 20 --tolerance 1vx --ground --views "$here/one_view.txt" --effort fast
     check_stats "$model"
 done
 expect 0 "" generate "$models/boulder.glb" -o out.glb --stats stats.json --error 0.2 \

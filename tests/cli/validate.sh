@@ -8,12 +8,13 @@ for model in "$models"/*.glb; do
     name="$(basename "$model" .glb)"
     for format in glb gltf; do
         paravent generate "$model" -o "$name.$format" --resolution 32 --tolerance 1vx --budget 40 \
-            --views "$here/one_view.txt"
+            --views "$here/one_view.txt" --effort fast
         holds "$name: exit $code" test "$code" = 0 -o "$code" = 5
     done
 done
 expect 0 "" generate "$models/boulder.glb" -o one.glb "${quick[@]}" --budget 1
-expect 0 "" generate "$models/boulder.glb" -o planar.glb --resolution 32
+expect 0 "" generate "$models/boulder.glb" -o planar.glb --resolution 32 --budget 12 \
+    --effort fast
 expect 0 "" generate "$models/sheet.glb" -o godot.gltf "${quick[@]}" --terrain --convention godot
 cp "$models/boulder.glb" $'q"\xc3\xa4.glb'
 expect 0 "" generate $'q"\xc3\xa4.glb' -o name.glb "${quick[@]}"
