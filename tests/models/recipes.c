@@ -180,6 +180,11 @@ static void AddWall(Shape* shape, const Wall* wall, const Opening* openings, int
     for (int i = 0; i < count; ++i) {
         AddReveal(shape, wall, &openings[i]);
     }
+    // The top, mitred: without it the walls would be hollow towards the attic.
+    const double half = wall->half;
+    const double in = WALL_THICKNESS;
+    AddPanel(shape, OnWall(wall, -half, WALL_HEIGHT, 0), OnWall(wall, half, WALL_HEIGHT, 0),
+             OnWall(wall, half - in, WALL_HEIGHT, in), OnWall(wall, in - half, WALL_HEIGHT, in));
 }
 
 static void AddBox(Shape* shape, const Point p[8])
