@@ -80,12 +80,16 @@ made "$boulder" --budget 12 --effort best --deadline 0.5
 is options.deadline 0.5
 compare "$(stat_of stats.json measure)" ">" 0
 compare "$(stat_of stats.json seconds.total)" "<" 30
-made "$boulder" --resolution 12 --budget 2 --method paper --views all
+# All views take long in a sanitizer build.
 cp out.glb all.glb
-made "$boulder" --resolution 12 --budget 2 --method paper --views above
-is options.views above
+if [ "${PVT_SANITIZED:-}" != 1 ]; then
+    made "$boulder" --resolution 24 --budget 2 --views above
+    is options.views above
+    made "$boulder" --resolution 24 --budget 2 --views all
+    cp out.glb all.glb
+fi
 printf '# straight down, twice as important as along x\n0 -1 0 2\n\n1 0 0 1 # x\n' >views.txt
-made "$boulder" --resolution 12 --budget 2 --method paper --views views.txt
+made "$boulder" --resolution 24 --budget 2 --views views.txt
 is options.views views.txt
 holds "--views FILE changes the result" test -n "$(cmp out.glb all.glb 2>&1)"
 
@@ -125,7 +129,8 @@ holds "-q still tells errors" grep -q "missing.glb" err
 holds "plain text has no escape codes" test -z "$(grep -l $'\033' err)"
 
 paravent generate "$boulder" "${quick[@]}" -o out.glb --progress none
-holds "--progress none leaves the summary" test "$(grep -c '  measure .*%' err)" = 1
+holds "--progress none leaves the summary" grep -q "error bound" err
+holds "--progress none shows no stage" test -z "$(grep -E '^ *[0-9.]+ s  ' err)"
 paravent generate "$boulder" "${quick[@]}" -o out.glb --progress json -v
 holds "--progress json: every line is an object, and stages run from 0 to 1" node -e '
     const lines = require("fs").readFileSync("err", "utf8").trimEnd().split("\n").map(JSON.parse);
