@@ -21,7 +21,8 @@ tools=(gcc:gcc g++:g++ cmake:cmake ninja:ninja-build pkg-config:pkg-config)
 packages=(libc6-dev libgl-dev libegl-dev libegl1 libosmesa6 libgl1-mesa-dri
     libtinygltf-dev nlohmann-json3-dev libassimp-dev libmeshoptimizer-dev libopenimageio-dev)
 if [ "$purpose" = test ]; then
-    tools+=(clang:clang clang-format:clang-format clang-tidy:clang-tidy node:nodejs npm:npm)
+    tools+=(clang:clang clang-format:clang-format clang-tidy:clang-tidy node:nodejs npm:npm
+        chromium:chromium)
     packages+=(libcmocka-dev libclang-rt-14-dev)
 fi
 
