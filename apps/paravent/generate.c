@@ -123,6 +123,7 @@ static pvtStatus Load(pvtRun* run, const pvtGenerateOptions* options, pvtGenerat
     load.scene = options->scene;
     load.node = options->node;
     load.masked = (pvtMasked)options->masked;
+    generated->prepared = pvtGetClock();
     const pvtStatus status = pvtLoadModel(run->context, &load, generated->input, &generated->model);
     generated->loaded = pvtGetClock();
     return status;

@@ -42,7 +42,7 @@ typedef struct pvtGenerated {
     pvtModel model;
     pvtOccluder occluder;
     pvtBuildStats stats;
-    double began, loaded, built, previewed, saved; ///< [s] on the clock
+    double began, prepared, loaded, built, previewed, saved; ///< [s] on the clock
 } pvtGenerated;
 
 /// The occluder's model file, with what made it under extras.paravent.

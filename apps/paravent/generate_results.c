@@ -48,7 +48,7 @@ static void WriteSeconds(pvtJson* json, const pvtGenerated* generated)
 {
     const pvtBuildStats* stats = &generated->stats;
     pvtJson_BeginObject(json, "seconds");
-    WriteStage(json, "load", generated->loaded - generated->began);
+    WriteStage(json, "load", generated->loaded - generated->prepared);
     WriteStage(json, "voxelize", stats->seconds.voxelize);
     WriteStage(json, "solid", stats->seconds.solid);
     WriteStage(json, "sections", stats->seconds.sections);
@@ -177,7 +177,7 @@ static void PrintSeconds(pvtRun* run, const pvtGenerated* generated)
     pvtReport_Detail(&run->report,
                      "  seconds: load %.3f, voxelize %.3f, solid %.3f, sections %.3f, "
                      "chains %.3f, select %.3f, refine %.3f, check %.3f, preview %.3f, save %.3f",
-                     generated->loaded - generated->began, stats->seconds.voxelize,
+                     generated->loaded - generated->prepared, stats->seconds.voxelize,
                      stats->seconds.solid, stats->seconds.sections, stats->seconds.chains,
                      stats->seconds.select, stats->seconds.refine, stats->seconds.check,
                      generated->previewed - generated->built,
