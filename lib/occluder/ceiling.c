@@ -12,6 +12,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { MANY_SPLITS = 6 }; // along a voxel: with more, its faces are drawn instead
+
 typedef struct CeilingTask {
     pvtContext* context;
     const pvtViewSet* views;
@@ -105,8 +107,20 @@ static int GetSplits(const pvtViewSet* views, const pvtBox3* bounds, int size, d
     for (size_t v = 0; v < views->count; ++v) {
         pixel = fmin(pixel, pvtMakeMaskFrame(&views->views[v], bounds, size).pixelSize);
     }
-    const double splits = ceil(1.5 * voxelSize / pixel);
-    return splits < 1.0 ? 1 : splits > 12.0 ? 12 : (int)splits;
+    return (int)fmin(fmax(ceil(1.5 * voxelSize / pixel), 1.0), MANY_SPLITS + 1.0);
+}
+
+// Voxels of many pixels are few: their faces are drawn.
+static pvtStatus MeasureFaces(pvtContext* context, const pvtViewSet* views, const pvtBox3* bounds,
+                              int size, const pvtBitGrid* grid, double* measure)
+{
+    pvtMesh faces;
+    pvtStatus status = pvtBuildVoxelMesh(context, grid, &faces);
+    if (status == PVT_OK) {
+        status = pvtMeasureOcclusion(context, views, bounds, size, &faces, measure);
+        pvtMesh_Free(context, &faces);
+    }
+    return status;
 }
 
 pvtStatus pvtMeasureGrid(pvtContext* context, const pvtViewSet* views, const pvtBox3* bounds,
@@ -114,6 +128,9 @@ pvtStatus pvtMeasureGrid(pvtContext* context, const pvtViewSet* views, const pvt
 {
     *measure = 0.0;
     const int splits = GetSplits(views, bounds, size, grid->frame.voxelSize);
+    if (splits > MANY_SPLITS) {
+        return MeasureFaces(context, views, bounds, size, grid, measure);
+    }
     const size_t count = ListBorder(grid, splits, NULL);
     pvtVec3* points = pvtAllocate(context, count, sizeof *points);
     uint32_t* table = pvtAllocate(context, pvtGetDistanceTableCount(size), sizeof *table);

@@ -64,6 +64,30 @@ static void a_cube_at_twelve_triangles_is_covered_but_for_two_voxels(void** stat
     DestroyTestContext(context);
 }
 
+static void an_occluder_never_hides_more_than_the_solid_at_any_resolution(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtMesh torus;
+    MakeTorus(context, &torus);
+    static const int resolutions[] = {12, 20, 48};
+    for (size_t r = 0; r < sizeof resolutions / sizeof *resolutions; ++r) {
+        for (int loose = 0; loose < 2; ++loose) {
+            pvtBuildOptions options = GetQuickOptions();
+            options.resolution = resolutions[r];
+            options.tolerance = (pvtLength){loose, true};
+            pvtOccluder occluder;
+            pvtBuildStats stats;
+            CHECK_OK(context, pvtBuildOccluder(context, &options, &torus, &occluder, &stats));
+            assert_true(stats.measure > 0.3 * stats.measureOfSolid);
+            assert_true(stats.measure <= 1.001 * stats.measureOfSolid);
+            pvtOccluder_Free(context, &occluder);
+        }
+    }
+    pvtMesh_Free(context, &torus);
+    DestroyTestContext(context);
+}
+
 static void the_budget_holds_and_nothing_leaves_the_allowed_voxels(void** state)
 {
     (void)state;
@@ -232,6 +256,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cube_at_twelve_triangles_is_covered_but_for_two_voxels),
+        cmocka_unit_test(an_occluder_never_hides_more_than_the_solid_at_any_resolution),
         cmocka_unit_test(the_budget_holds_and_nothing_leaves_the_allowed_voxels),
         cmocka_unit_test(the_hole_of_a_torus_stays_open),
         cmocka_unit_test(threads_do_not_change_a_byte),
