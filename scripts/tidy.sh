@@ -28,7 +28,8 @@ if [ "${#compiled[@]}" = 0 ]; then
 fi
 # One file a process: the slowest file, not the sum, is what one waits for.
 check() {
-    local assume=(--extra-arg=-include --extra-arg="$PWD/scripts/analyzer.h" --extra-arg="-I$PWD/lib")
+    local assume=(--extra-arg=-include --extra-arg="$PWD/scripts/analyzer.h"
+        --extra-arg="-I$PWD/lib")
     case "$2" in
     lib/base/context.c | *.cpp) assume=() ;;
     esac
