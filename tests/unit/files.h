@@ -3,7 +3,7 @@
 #ifndef PVT_TEST_FILES_H
 #define PVT_TEST_FILES_H
 
-#include "check.h"
+#include "failures.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -96,33 +96,6 @@ static inline void CheckMessage(const pvtContext* context, const char* part)
     if (strstr(pvtContext_GetMessage(context), part) == NULL) {
         fail_msg("\"%s\" does not hold \"%s\"", pvtContext_GetMessage(context), part);
     }
-}
-
-/// Memory that refuses the request with number `failAt` and all that come after it.
-typedef struct PoorHeap {
-    int requests, failAt;
-} PoorHeap;
-
-static inline void* AllocateFromPoorHeap(void* user, size_t size)
-{
-    PoorHeap* heap = user;
-    return heap->requests++ >= heap->failAt ? NULL : malloc(size);
-}
-
-static inline void ReleaseToPoorHeap(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
-static inline pvtContext* CreatePoorContext(PoorHeap* heap)
-{
-    pvtContextDef def = pvtDefaultContextDef();
-    def.threadCount = 1;
-    def.allocator = (pvtAllocator){AllocateFromPoorHeap, ReleaseToPoorHeap, heap};
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-    return context;
 }
 
 /// Bytes one behind the other, such as a binary chunk.

@@ -3,7 +3,7 @@
 #ifndef PVT_TEST_SHAPES_H
 #define PVT_TEST_SHAPES_H
 
-#include "check.h"
+#include "failures.h"
 
 #include "base/random.h"
 #include "section/predicates.h"
@@ -157,47 +157,6 @@ static inline bool HasNoCrossing(const pvtLoopSet* set)
         }
     }
     return true;
-}
-
-// Memory that refuses the request with number `failAt` and all that come after it.
-typedef struct FailingHeap {
-    int requests, failAt;
-} FailingHeap;
-
-static inline void* AllocateUnlessFailing(void* user, size_t size)
-{
-    FailingHeap* heap = user;
-    return heap->requests++ >= heap->failAt ? NULL : malloc(size);
-}
-
-static inline void ReleaseFromFailing(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
-typedef pvtStatus FallibleFcn(pvtContext* context, const void* input);
-
-// Calls `call` with one more allocation granted each time, until it succeeds: each failure must be
-// PVT_OUT_OF_MEMORY and leave nothing held.
-static inline void CheckFailingAllocations(FallibleFcn* call, const void* input)
-{
-    for (int failAt = 1;; ++failAt) {
-        FailingHeap heap = {0, failAt};
-        pvtContextDef def = pvtDefaultContextDef();
-        def.threadCount = 1;
-        def.allocator = (pvtAllocator){AllocateUnlessFailing, ReleaseFromFailing, &heap};
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-        const pvtStatus status = call(context, input);
-        assert_int_equal(pvtContext_GetHeldBytes(context), 0);
-        pvtDestroyContext(context);
-        if (status == PVT_OK) {
-            assert_true(failAt > 1);
-            return;
-        }
-        assert_int_equal(status, PVT_OUT_OF_MEMORY);
-    }
 }
 
 #endif

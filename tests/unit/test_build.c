@@ -222,24 +222,13 @@ static void a_single_triangle_has_nothing_inside_and_the_message_names_remedies(
     DestroyTestContext(context);
 }
 
-static bool StopAfterAWhile(void* user)
-{
-    int* left = user;
-    return --*left < 0;
-}
-
 static void a_cancelled_build_leaves_nothing(void** state)
 {
     (void)state;
     static const int questions[] = {0, 3, 50, 200};
     for (size_t i = 0; i < sizeof questions / sizeof *questions; ++i) {
-        int left = questions[i];
-        pvtContextDef def = pvtDefaultContextDef();
-        def.threadCount = 1;
-        def.isCancelled = StopAfterAWhile;
-        def.user = &left;
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+        CancelCounter counter = {questions[i]};
+        pvtContext* context = CreateCancelledContext(&counter, 1);
         pvtMesh torus;
         MakeTorus(context, &torus);
         const pvtBuildOptions options = GetQuickOptions();

@@ -462,15 +462,9 @@ static void a_failed_allocation_leaves_nothing(void** state)
     (void)state;
     pvtContext* context = CreateTestContext(1);
     Slice slice = MakeSlice(context, MakeShape(context, 120, IsDisc), 1);
-    CheckFailingAllocations(BuildAndFree, &slice);
+    CheckEveryAllocation(BuildAndFree, &slice);
     FreeSlice(context, &slice);
     DestroyTestContext(context);
-}
-
-static bool IsAlwaysCancelled(void* user)
-{
-    (void)user;
-    return true;
 }
 
 static void a_cancelled_build_leaves_nothing(void** state)
@@ -478,10 +472,8 @@ static void a_cancelled_build_leaves_nothing(void** state)
     (void)state;
     pvtContext* context = CreateTestContext(1);
     Slice slice = MakeSlice(context, MakeShape(context, 64, IsRing), 1);
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = IsAlwaysCancelled;
-    pvtContext* cancelled = NULL;
-    assert_int_equal(pvtCreateContext(&def, &cancelled), PVT_OK);
+    CancelCounter counter = {0};
+    pvtContext* cancelled = CreateCancelledContext(&counter, 1);
     const pvtChainOptions options = pvtDefaultChainOptions();
     pvtChainSet chains;
     assert_int_equal(pvtBuildChains(cancelled, &options, &slice.polygons, &chains), PVT_CANCELLED);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What is empty, flat, far away, wrong, cancelled or short of memory.
 #include "evaluate_shapes.h"
+#include "failures.h"
 
 #include <limits.h>
-#include <stdatomic.h>
 
 static const pvtVec3 TOWARDS_MINUS_Z = {0, 0, -1};
 
@@ -251,18 +251,6 @@ static void cancelling_leaves_nothing_and_progress_only_grows(void** state)
     DestroyTestContext(context);
 }
 
-// An allocator that serves so many requests and no more.
-static void* AllocateSome(void* user, size_t size)
-{
-    return atomic_fetch_sub((atomic_int*)user, 1) > 0 ? malloc(size) : NULL;
-}
-
-static void ReleaseSome(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
 static void each_refused_allocation_is_told_and_leaks_nothing(void** state)
 {
     (void)state;
@@ -272,12 +260,8 @@ static void each_refused_allocation_is_told_and_leaks_nothing(void** state)
     const pvtEvaluateOptions options = MakeOptions(3, 10, 32);
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int served = 1; status != PVT_OK; ++served) {
-        atomic_int left = served;
-        pvtContextDef def = pvtDefaultContextDef();
-        def.allocator = (pvtAllocator){AllocateSome, ReleaseSome, &left};
-        def.threadCount = 1;
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+        PoorHeap heap = {.failAt = served};
+        pvtContext* context = CreatePoorContext(&heap);
         pvtEvaluation evaluation;
         status = pvtEvaluateOccluders(context, &options, &ball, occluders, 2, &evaluation);
         assert_true(status == PVT_OK || status == PVT_OUT_OF_MEMORY);
@@ -285,7 +269,7 @@ static void each_refused_allocation_is_told_and_leaks_nothing(void** state)
         assert_true((status == PVT_OK) == (evaluation.occluders != NULL));
         pvtEvaluation_Free(context, &evaluation);
 
-        atomic_store(&left, served);
+        atomic_store(&heap.requests, 0);
         const pvtVec3 direction = {1, 2, 3};
         pvtSilhouetteOptions silhouettes = {&direction, 1, 16, 16, 1};
         pvtImage image;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Contexts and silhouettes. Needs libegl1, libgl1-mesa-dri and libosmesa6 at run time.
-#include "check.h"
+#include "failures.h"
 
 #include "base/context.h"
 #include "gl/gl_context.h"
 
 #include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const pvtGlBackend backends[] = {PVT_GL_EGL, PVT_GL_OSMESA};
@@ -277,28 +276,6 @@ static void contexts_draw_at_once_on_threads_of_their_own(void** state)
     }
 }
 
-// Refuses the allocation that it is counting down to.
-typedef struct Countdown {
-    int left;
-    bool refused;
-} Countdown;
-
-static void* AllocateOrRefuse(void* user, size_t size)
-{
-    Countdown* countdown = user;
-    if (countdown->left-- == 0) {
-        countdown->refused = true;
-        return NULL;
-    }
-    return malloc(size);
-}
-
-static void ReleaseBlock(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
 static pvtStatus OpenAndDraw(pvtContext* context, pvtGlBackend backend)
 {
     pvtGl* gl = NULL;
@@ -325,13 +302,10 @@ static void a_refused_allocation_leaks_nothing(void** state)
     for (size_t i = 0; i < 2; ++i) {
         bool refused = true;
         for (int first = 1; refused; ++first) {
-            Countdown countdown = {first, false};
-            pvtContextDef def = pvtDefaultContextDef();
-            def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &countdown};
-            pvtContext* context = NULL;
-            assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+            PoorHeap heap = {.failAt = first, .failsOnce = true};
+            pvtContext* context = CreatePoorContext(&heap);
             const pvtStatus status = OpenAndDraw(context, backends[i]);
-            refused = countdown.refused;
+            refused = PoorHeap_HasRefused(&heap);
             assert_int_equal(status, refused ? PVT_OUT_OF_MEMORY : PVT_OK);
             assert_true(first < 20);
             DestroyTestContext(context);
@@ -339,19 +313,11 @@ static void a_refused_allocation_leaks_nothing(void** state)
     }
 }
 
-static bool AlwaysCancel(void* user)
-{
-    (void)user;
-    return true;
-}
-
 static void a_cancelled_silhouette_stops(void** state)
 {
     (void)state;
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = AlwaysCancel;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    CancelCounter counter = {0};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
     assert_int_equal(OpenAndDraw(context, PVT_GL_AUTO), PVT_CANCELLED);
     DestroyTestContext(context);
 }

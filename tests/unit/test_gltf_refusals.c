@@ -361,21 +361,13 @@ static void names_are_cleaned(void** state)
                  PVT_UNSUPPORTED, "?[2J");
 }
 
-static bool IsCancelled(void* user)
-{
-    (void)user;
-    return true;
-}
-
 static void loading_stops_when_asked(void** state)
 {
     Fixture* f = *state;
     const Pack cube = PackCube();
     WriteGlb(InFolder(&f->folder, "model.glb"), CUBE, &cube);
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = IsCancelled;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    CancelCounter counter = {0};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
     pvtModel model;
     assert_int_equal(pvtLoadModel(context, NULL, InFolder(&f->folder, "model.glb"), &model),
                      PVT_CANCELLED);
@@ -392,7 +384,7 @@ static void every_failing_allocation_is_reported(void** state)
     WriteGlb(InFolder(&f->folder, "model.glb"), CUBE, &cube);
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int failAt = 1; status != PVT_OK; ++failAt) {
-        PoorHeap heap = {0, failAt};
+        PoorHeap heap = {.failAt = failAt};
         pvtContext* context = CreatePoorContext(&heap);
         pvtModel model;
         status = pvtLoadModel(context, NULL, InFolder(&f->folder, "model.glb"), &model);

@@ -219,7 +219,7 @@ static void a_hollow_solid_is_warned_about_with_the_size_that_helps(void** state
     DestroyTestContext(context);
 }
 
-static pvtStatus FillAndFree(pvtContext* context, void* data)
+static pvtStatus FillAndFree(pvtContext* context, const void* data)
 {
     const pvtSolidOptions options = pvtDefaultSolidOptions();
     pvtSolid solid;

@@ -149,7 +149,7 @@ static void every_failing_allocation_is_reported(void** state)
     pvtImage_Free(f->context, &image);
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int failAt = 1; status != PVT_OK; ++failAt) {
-        PoorHeap heap = {0, failAt};
+        PoorHeap heap = {.failAt = failAt};
         pvtContext* context = CreatePoorContext(&heap);
         pvtImage back;
         status = pvtLoadImage(context, path, &back);

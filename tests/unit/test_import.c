@@ -297,20 +297,12 @@ static void no_descriptor_is_left_open(void** state)
     assert_int_equal(CountDescriptors(), before);
 }
 
-static bool IsCancelled(void* user)
-{
-    (void)user;
-    return true;
-}
-
 static void importing_stops_when_asked(void** state)
 {
     Fixture* f = *state;
     WriteText(InFolder(&f->folder, "a.obj"), TETRAHEDRON "f 1 2 3\n");
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = IsCancelled;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    CancelCounter counter = {0};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
     assert_int_equal(pvtLoadModel(context, NULL, InFolder(&f->folder, "a.obj"), &f->model),
                      PVT_CANCELLED);
     DestroyTestContext(context);
@@ -322,7 +314,7 @@ static void every_failing_allocation_is_reported(void** state)
     WriteText(InFolder(&f->folder, "a.obj"), TETRAHEDRON "v nan 0 0\nf 1 2 3\nf 3 4 5\n");
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int failAt = 1; status != PVT_OK; ++failAt) {
-        PoorHeap heap = {0, failAt};
+        PoorHeap heap = {.failAt = failAt};
         pvtContext* context = CreatePoorContext(&heap);
         pvtModel model;
         status = pvtLoadModel(context, NULL, InFolder(&f->folder, "a.obj"), &model);

@@ -177,26 +177,12 @@ static void its_text_is_cleaned(void** state)
     assert_null(strchr(pvtContext_GetMessage(f->context), '\x1b'));
 }
 
-typedef struct Patience {
-    int questions;
-} Patience;
-
-static bool IsOutOfPatience(void* user)
-{
-    Patience* patience = user;
-    return ++patience->questions > 4;
-}
-
 static void an_importer_that_never_ends_is_killed_when_cancelled(void** state)
 {
     Fixture* f = *state;
     WriteImporter(f, "exec sleep 100");
-    Patience patience = {0};
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = IsOutOfPatience;
-    def.user = &patience;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    CancelCounter counter = {4};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
     struct timespec before, after;
     (void)clock_gettime(CLOCK_MONOTONIC, &before);
     assert_int_equal(pvtLoadModel(context, NULL, InFolder(&f->folder, "a.obj"), &f->model),

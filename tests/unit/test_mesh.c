@@ -221,7 +221,7 @@ static void directions_of_a_curved_surface_are_spread_and_bounded(void** state)
     DestroyTestContext(context);
 }
 
-static pvtStatus WorkOnMeshes(pvtContext* context, void* data)
+static pvtStatus WorkOnMeshes(pvtContext* context, const void* data)
 {
     (void)data;
     static const pvtVec3 positions[3] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "check.h"
+#include "failures.h"
 
 #include "base/bits.h"
 #include "base/context.h"
@@ -8,7 +8,6 @@
 #include "section/directions.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { ONE = 1 << PVT_PLANE_BITS };
 
@@ -348,19 +347,11 @@ static void options_out_of_range_are_refused(void** state)
     DestroyTestContext(context);
 }
 
-static bool CancelAlways(void* user)
-{
-    (void)user;
-    return true;
-}
-
 static void a_cancelled_plan_is_empty(void** state)
 {
     (void)state;
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = CancelAlways;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    CancelCounter counter = {0};
+    pvtContext* context = CreateCancelledContext(&counter, 2);
     pvtBitGrid grid = MakeGrid(context, 10, 10, 10);
     FillBox(&grid, (int[]){1, 1, 1}, (int[]){9, 9, 9});
     const pvtPlanOptions options = pvtDefaultPlanOptions();
@@ -371,19 +362,6 @@ static void a_cancelled_plan_is_empty(void** state)
     DestroyTestContext(context);
 }
 
-// Allocations that may still be made before one fails.
-static void* AllocateSome(void* user, size_t size)
-{
-    int* left = user;
-    return (*left)-- > 0 ? malloc(size) : NULL;
-}
-
-static void ReleaseSome(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
 static void every_failing_allocation_leaves_an_empty_plan(void** state)
 {
     (void)state;
@@ -392,18 +370,14 @@ static void every_failing_allocation_leaves_an_empty_plan(void** state)
     FillBox(&grid, (int[]){1, 1, 1}, (int[]){9, 9, 9});
     const pvtPlanOptions options = pvtDefaultPlanOptions();
     bool made = false;
-    for (int allowed = 1; !made; ++allowed) {
-        int left = allowed;
-        pvtContextDef def = pvtDefaultContextDef();
-        def.threadCount = 1;
-        def.allocator = (pvtAllocator){AllocateSome, ReleaseSome, &left};
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    for (int failAt = 1; !made; ++failAt) {
+        PoorHeap heap = {.failAt = failAt};
+        pvtContext* context = CreatePoorContext(&heap);
         pvtSectionPlan plan;
         const pvtStatus status = pvtPlanSections(context, &options, &grid, &plan);
         made = status == PVT_OK;
         assert_true(made || (status == PVT_OUT_OF_MEMORY && plan.planes == NULL));
-        assert_true(!made || allowed > 5);
+        assert_true(!made || failAt > 5);
         pvtSectionPlan_Free(context, &plan);
         DestroyTestContext(context);
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Previews: what must be seen in the six tiles.
-#include "check.h"
+#include "failures.h"
 
+#include <limits.h>
 #include <math.h>
 #include <paravent/gl.h>
 #include <stdlib.h>
@@ -340,27 +341,11 @@ static void tile_sizes_out_of_range_are_refused(void** state)
     CloseScene(&scene);
 }
 
-// Refuses the allocation that it is counting down to.
-static void* AllocateOrRefuse(void* user, size_t size)
-{
-    int* left = user;
-    return (*left)-- == 0 ? NULL : malloc(size);
-}
-
-static void ReleaseBlock(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
 static void a_refused_allocation_leaks_nothing(void** state)
 {
     (void)state;
-    int left = -1;
-    pvtContextDef def = pvtDefaultContextDef();
-    def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &left};
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    PoorHeap heap = {.failAt = INT_MAX, .failsOnce = true};
+    pvtContext* context = CreatePoorContext(&heap);
     pvtGl* gl = NULL;
     CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
     const size_t held = pvtContext_GetHeldBytes(context);
@@ -370,9 +355,10 @@ static void a_refused_allocation_leaks_nothing(void** state)
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int refused = 0; status != PVT_OK; ++refused) {
         pvtImage image;
-        left = refused;
+        atomic_store(&heap.requests, 0);
+        heap.failAt = refused;
         status = pvtRenderPreview(context, gl, &options, &box.mesh, &box.mesh, &image);
-        left = -1;
+        heap.failAt = INT_MAX;
         assert_true(status == PVT_OK || status == PVT_OUT_OF_MEMORY);
         assert_true(refused < 20 && (refused > 0 || status == PVT_OUT_OF_MEMORY));
         assert_true((image.pixels != NULL) == (status == PVT_OK));
@@ -383,28 +369,18 @@ static void a_refused_allocation_leaks_nothing(void** state)
     DestroyTestContext(context);
 }
 
-static bool CancelLater(void* user)
-{
-    int* left = user;
-    return (*left)-- <= 0;
-}
-
 static void a_cancelled_preview_leaves_no_image(void** state)
 {
     (void)state;
-    int left = 0;
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = CancelLater;
-    def.user = &left;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    CancelCounter counter = {0};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
     pvtGl* gl = NULL;
     CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
     Box box;
     MakeBox((pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &box);
     const pvtPreviewOptions options = {.tileSize = 64, .up = PVT_AXIS_Y};
     for (int later = 0; later < 5; ++later) {
-        left = later;
+        atomic_store(&counter.left, later);
         pvtImage image;
         assert_int_equal(pvtRenderPreview(context, gl, &options, &box.mesh, &box.mesh, &image),
                          PVT_CANCELLED);

@@ -278,7 +278,7 @@ static void every_failing_allocation_leaves_no_file(void** state)
     for (int i = 0; i < 4; ++i) {
         pvtStatus status = PVT_OUT_OF_MEMORY;
         for (int failAt = 1; status != PVT_OK; ++failAt) {
-            PoorHeap heap = {0, failAt};
+            PoorHeap heap = {.failAt = failAt};
             pvtContext* context = CreatePoorContext(&heap);
             const char* path = InFolder(&f->folder, names[i]);
             status = pvtSaveModel(context, path, &item, 1);

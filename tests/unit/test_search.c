@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "check.h"
+#include "failures.h"
 
 #include "base/bits.h"
 #include "base/context.h"
-#include "base/random.h"
 
 #include <math.h>
 #include <paravent/section.h>
-#include <stdatomic.h>
-#include <stdlib.h>
 #include <string.h>
 
 static pvtBitGrid MakeGrid(pvtContext* context, int sizeX, int sizeY, int sizeZ)
@@ -310,16 +307,16 @@ static void an_empty_plan_gives_an_empty_set(void** state)
     DestroyTestContext(context);
 }
 
-// Hooks of a context that is asked to stop after so many questions and reports, and whose
-// allocator fails after so many blocks.
+// What a context is told to stop after, what it has for memory, and what it reported.
 typedef struct Hooks {
-    atomic_int questionsLeft, blocksLeft;
+    CancelCounter counter;
+    PoorHeap heap;
     double reported;
 } Hooks;
 
-static bool CancelLater(void* user)
+static bool IsSearchCancelled(void* user)
 {
-    return atomic_fetch_sub(&((Hooks*)user)->questionsLeft, 1) <= 0;
+    return IsCancelledAfter(&((Hooks*)user)->counter);
 }
 
 static void NoteProgress(const char* stage, double fraction, void* user)
@@ -330,24 +327,13 @@ static void NoteProgress(const char* stage, double fraction, void* user)
     hooks->reported = fraction;
 }
 
-static void* AllocateSome(void* user, size_t size)
-{
-    return atomic_fetch_sub(&((Hooks*)user)->blocksLeft, 1) > 0 ? malloc(size) : NULL;
-}
-
-static void ReleaseSome(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
 static pvtStatus SearchWithHooks(Hooks* hooks, const pvtSliceVolume* volume,
                                  const pvtSectionPlan* plan)
 {
     pvtContextDef def = pvtDefaultContextDef();
     def.threadCount = 2;
-    def.allocator = (pvtAllocator){AllocateSome, ReleaseSome, hooks};
-    def.isCancelled = CancelLater;
+    def.allocator = (pvtAllocator){AllocateFromPoorHeap, ReleaseToPoorHeap, &hooks->heap};
+    def.isCancelled = IsSearchCancelled;
     def.progress = NoteProgress;
     def.user = hooks;
     pvtContext* context = NULL;
@@ -371,14 +357,14 @@ static void a_search_can_be_cancelled_anywhere_and_fails_cleanly_without_memory(
     pvtSectionPlan plan = MakePlan(context, &grid);
     const int all = (int)(plan.planeCount + plan.binCount);
     for (int questions = 0; questions < all; questions += all / 20) {
-        Hooks hooks = {questions, 1000, 0.0};
+        Hooks hooks = {.counter = {questions}, .heap.failAt = 1000};
         assert_int_equal(SearchWithHooks(&hooks, &volume, &plan), PVT_CANCELLED);
     }
     for (int blocks = 1; blocks < 5; ++blocks) {
-        Hooks hooks = {all + 1, blocks, 0.0};
+        Hooks hooks = {.counter = {all + 1}, .heap.failAt = blocks};
         assert_int_equal(SearchWithHooks(&hooks, &volume, &plan), PVT_OUT_OF_MEMORY);
     }
-    Hooks hooks = {all + 1, 5, 0.0};
+    Hooks hooks = {.counter = {all + 1}, .heap.failAt = 5};
     assert_int_equal(SearchWithHooks(&hooks, &volume, &plan), PVT_OK);
     assert_true(hooks.reported > 0.1);
     pvtSectionPlan_Free(context, &plan);

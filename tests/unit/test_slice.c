@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "check.h"
+#include "failures.h"
 
 #include "base/bits.h"
 #include "base/context.h"
@@ -382,32 +382,15 @@ static void a_volume_is_the_same_for_any_number_of_threads_and_leaks_nothing(voi
     DestroyTestContext(four);
 }
 
-// Allocations that may still be made before one fails.
-static void* AllocateSome(void* user, size_t size)
-{
-    int* left = user;
-    return (*left)-- > 0 ? malloc(size) : NULL;
-}
-
-static void ReleaseSome(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
 static void a_volume_that_does_not_fit_is_left_empty(void** state)
 {
     (void)state;
     pvtContext* plenty = CreateTestContext(1);
     pvtBitGrid grid = MakeGrid(plenty, 20, 20, 20);
     bool made = false;
-    for (int allowed = 1; !made; ++allowed) {
-        int left = allowed;
-        pvtContextDef def = pvtDefaultContextDef();
-        def.threadCount = 1;
-        def.allocator = (pvtAllocator){AllocateSome, ReleaseSome, &left};
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    for (int failAt = 1; !made; ++failAt) {
+        PoorHeap heap = {.failAt = failAt};
+        pvtContext* context = CreatePoorContext(&heap);
         pvtSliceVolume volume;
         const pvtStatus status = pvtCreateSliceVolume(context, &grid, &volume);
         made = status == PVT_OK;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The stencil's slices against a lookup of each cell's centre, and against the CPU slicer.
-#include "check.h"
+#include "failures.h"
 
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/random.h"
 #include "stencil_check.h"
 
+#include <limits.h>
 #include <math.h>
 #include <paravent/gl.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_VOXELS = 48 };
@@ -300,19 +300,6 @@ static void a_mesh_that_is_not_of_the_grid_is_refused(void** state)
     DestroyTestContext(context);
 }
 
-// Refuses the allocation that it is counting down to.
-static void* AllocateOrRefuse(void* user, size_t size)
-{
-    int* left = user;
-    return (*left)-- == 0 ? NULL : malloc(size);
-}
-
-static void ReleaseBlock(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
 // One voxel, sliced through its middle.
 static pvtStatus SliceOneVoxel(pvtContext* context, pvtGl* gl)
 {
@@ -340,19 +327,17 @@ static pvtStatus SliceOneVoxel(pvtContext* context, pvtGl* gl)
 static void a_refused_allocation_leaks_nothing(void** state)
 {
     (void)state;
-    int left = -1;
-    pvtContextDef def = pvtDefaultContextDef();
-    def.allocator = (pvtAllocator){AllocateOrRefuse, ReleaseBlock, &left};
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    PoorHeap heap = {.failAt = INT_MAX, .failsOnce = true};
+    pvtContext* context = CreatePoorContext(&heap);
     pvtGl* gl = NULL;
     CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
     const size_t held = pvtContext_GetHeldBytes(context);
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int refused = 0; status != PVT_OK; ++refused) {
-        left = refused;
+        atomic_store(&heap.requests, 0);
+        heap.failAt = refused;
         status = SliceOneVoxel(context, gl);
-        left = -1;
+        heap.failAt = INT_MAX;
         assert_true(status == PVT_OK || status == PVT_OUT_OF_MEMORY);
         assert_true(refused < 20 && (refused > 0 || status == PVT_OUT_OF_MEMORY));
         assert_int_equal(pvtContext_GetHeldBytes(context), held);
@@ -361,19 +346,11 @@ static void a_refused_allocation_leaks_nothing(void** state)
     DestroyTestContext(context);
 }
 
-static bool AlwaysCancel(void* user)
-{
-    (void)user;
-    return true;
-}
-
 static void a_cancelled_slicer_stops(void** state)
 {
     (void)state;
-    pvtContextDef def = pvtDefaultContextDef();
-    def.isCancelled = AlwaysCancel;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    CancelCounter counter = {0};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
     pvtGl* gl = NULL;
     CHECK_OK(context, pvtOpenGl(context, PVT_GL_AUTO, &gl));
     assert_int_equal(SliceOneVoxel(context, gl), PVT_CANCELLED);

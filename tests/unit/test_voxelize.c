@@ -491,7 +491,7 @@ static void results_do_not_depend_on_the_number_of_threads(void** state)
     DestroyTestContext(first);
 }
 
-static pvtStatus VoxelizeAndFree(pvtContext* context, void* data)
+static pvtStatus VoxelizeAndFree(pvtContext* context, const void* data)
 {
     pvtVoxelizeOptions options = pvtDefaultVoxelizeOptions();
     options.resolution = 60;
@@ -502,7 +502,7 @@ static pvtStatus VoxelizeAndFree(pvtContext* context, void* data)
     return status;
 }
 
-static pvtStatus FillEveryWay(pvtContext* context, void* data)
+static pvtStatus FillEveryWay(pvtContext* context, const void* data)
 {
     pvtSolidOptions options = pvtDefaultSolidOptions();
     options.smallestHole = 4.0 * ((const pvtBitGrid*)data)->frame.voxelSize;
@@ -516,7 +516,7 @@ static pvtStatus FillEveryWay(pvtContext* context, void* data)
     return status;
 }
 
-static pvtStatus GrowFarAndFree(pvtContext* context, void* data)
+static pvtStatus GrowFarAndFree(pvtContext* context, const void* data)
 {
     pvtSolid solid = {.inside = *(const pvtBitGrid*)data, .surface = *(const pvtBitGrid*)data};
     pvtBitGrid allowed;
@@ -530,7 +530,7 @@ static pvtStatus GrowFarAndFree(pvtContext* context, void* data)
     return status;
 }
 
-static pvtStatus TransformAndFree(pvtContext* context, void* data)
+static pvtStatus TransformAndFree(pvtContext* context, const void* data)
 {
     const int* size = ((const pvtBitGrid*)data)->frame.size;
     uint32_t* distances = malloc((size_t)size[0] * (size_t)size[1] * (size_t)size[2] * 4);
@@ -540,7 +540,7 @@ static pvtStatus TransformAndFree(pvtContext* context, void* data)
     return status;
 }
 
-static pvtStatus BuildMeshAndFree(pvtContext* context, void* data)
+static pvtStatus BuildMeshAndFree(pvtContext* context, const void* data)
 {
     pvtMesh mesh;
     const pvtStatus status = pvtBuildVoxelMesh(context, data, &mesh);

@@ -3,14 +3,12 @@
 #ifndef PVT_TEST_VOXEL_SHAPES_H
 #define PVT_TEST_VOXEL_SHAPES_H
 
-#include "check.h"
+#include "failures.h"
 
 #include "base/context.h"
 #include "base/random.h"
 
 #include <paravent/voxel.h>
-#include <stdatomic.h>
-#include <stdlib.h>
 #include <string.h>
 
 /// The 12 triangles of a box, wound outwards.
@@ -53,75 +51,6 @@ static inline void FillRandomly(pvtBitGrid* grid, pvtRandom* random, uint32_t pe
                 }
             }
         }
-    }
-}
-
-/// Refuses the request after `left` more.
-typedef struct FailingAllocator {
-    long left;
-} FailingAllocator;
-
-static inline void* AllocateOrFail(void* user, size_t size)
-{
-    FailingAllocator* allocator = user;
-    return allocator->left-- > 0 ? malloc(size) : NULL;
-}
-
-static inline void ReleaseToHeap(void* user, void* memory)
-{
-    (void)user;
-    free(memory);
-}
-
-typedef pvtStatus StageFcn(pvtContext* context, void* data);
-
-/// Lets the first, second, third … request of a stage fail, until it succeeds: it must say so, and
-/// hold nothing afterwards. The stage frees what it made.
-static inline void CheckEveryAllocation(StageFcn* stage, void* data)
-{
-    pvtStatus status = PVT_OUT_OF_MEMORY;
-    for (long count = 0; status != PVT_OK; ++count) {
-        FailingAllocator allocator = {count + 1}; // one for the context
-        pvtContextDef def = pvtDefaultContextDef();
-        def.allocator = (pvtAllocator){AllocateOrFail, ReleaseToHeap, &allocator};
-        def.threadCount = 1;
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-        status = stage(context, data);
-        assert_true(status == PVT_OK || status == PVT_OUT_OF_MEMORY);
-        assert_true((status == PVT_OK) == (allocator.left >= 0));
-        DestroyTestContext(context);
-        assert_true(count < 10000);
-    }
-}
-
-typedef struct CancelCounter {
-    atomic_long left;
-} CancelCounter;
-
-static inline bool IsCancelledAfter(void* user)
-{
-    CancelCounter* counter = user;
-    return atomic_fetch_sub(&counter->left, 1) <= 0;
-}
-
-/// Cancels at the first, second, third … question, until the stage runs through: it must ask at
-/// least once, and hold nothing after it was cancelled.
-static inline void CheckEveryCancel(StageFcn* stage, void* data)
-{
-    pvtStatus status = PVT_CANCELLED;
-    for (long count = 0; status != PVT_OK; count = 2 * count + 1) {
-        CancelCounter counter;
-        atomic_init(&counter.left, count);
-        pvtContextDef def = pvtDefaultContextDef();
-        def.threadCount = 2;
-        def.isCancelled = IsCancelledAfter;
-        def.user = &counter;
-        pvtContext* context = NULL;
-        assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
-        status = stage(context, data);
-        assert_true(status == PVT_CANCELLED || (status == PVT_OK && count > 0));
-        DestroyTestContext(context);
     }
 }
 
