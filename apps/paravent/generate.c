@@ -3,17 +3,11 @@
 #include "generate.h"
 
 #include "command.h"
+#include "setup.h"
 #include "targets.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-// What is opened before the long work, so that nothing missing is found behind it.
-typedef struct Setup {
-    pvtViewList views;
-    pvtGl* gl; // null: neither slicer nor preview needs it
-    bool slicesOnGl;
-} Setup;
 
 static pvtStatus CheckEndings(pvtRun* run, const pvtGenerateOptions* options)
 {
@@ -33,11 +27,9 @@ static pvtStatus CheckEndings(pvtRun* run, const pvtGenerateOptions* options)
 
 static pvtStatus CheckFiles(pvtRun* run, const pvtGenerateOptions* options, const char* input)
 {
-    const bool hasViewFile =
-        strcmp(options->views, "all") != 0 && strcmp(options->views, "above") != 0;
     const pvtTarget targets[] = {
         {NULL, input, false},
-        {NULL, hasViewFile ? options->views : NULL, false},
+        {NULL, pvtGetViewFile(options), false},
         {"--output", options->output, false},
         {"--stats", options->stats, true},
         {"--preview", options->preview, false},
@@ -45,99 +37,28 @@ static pvtStatus CheckFiles(pvtRun* run, const pvtGenerateOptions* options, cons
     return pvtCheckTargets(run, targets, sizeof targets / sizeof *targets);
 }
 
-// One backend serves both: the one that slices, or for a preview alone any that is there.
-static pvtStatus OpenBackend(pvtRun* run, const pvtGenerateOptions* options, Setup* setup)
-{
-    int slicer = options->slicer;
-    if (slicer == PVT_SLICER_AUTO) {
-        slicer = pvtHasGlHardware() ? PVT_SLICER_EGL : PVT_SLICER_SAMPLE;
-    }
-    setup->slicesOnGl = slicer == PVT_SLICER_EGL || slicer == PVT_SLICER_OSMESA;
-    if (!setup->slicesOnGl && options->preview == NULL) {
-        return PVT_OK;
-    }
-    const pvtGlBackend backend = slicer == PVT_SLICER_EGL      ? PVT_GL_EGL
-                                 : slicer == PVT_SLICER_OSMESA ? PVT_GL_OSMESA
-                                                               : PVT_GL_AUTO;
-    const pvtStatus status = pvtOpenGl(run->context, backend, &setup->gl);
-    if (status == PVT_OK) {
-        pvtReport_Detail(&run->report, "graphics: %s", pvtGl_GetName(setup->gl));
-    }
-    return status;
-}
-
-// Whether pictures can be written at all is seen by writing one, of a pixel, to nowhere.
-static pvtStatus CheckImages(pvtRun* run, const pvtGenerateOptions* options)
-{
-    static const char nowhere[] = "/dev/null";
-    pvtImage pixel = {0};
-    pvtStatus status = pvtCreateImage(run->context, 1, 1, &pixel);
-    if (status != PVT_OK) {
-        return status;
-    }
-    status = pvtSaveImage(run->context, nowhere, &pixel);
-    pvtImage_Free(run->context, &pixel);
-    if (status == PVT_OK) {
-        return PVT_OK;
-    }
-    const char* reason = pvtContext_GetMessage(run->context);
-    const size_t length = strlen(nowhere);
-    if (strncmp(reason, nowhere, length) == 0 && strncmp(reason + length, ": ", 2) == 0) {
-        reason += length + 2;
-    }
-    return pvtRun_Fail(run, status, "--preview %s: %s", options->preview, reason);
-}
-
 static pvtStatus Prepare(pvtRun* run, const pvtGenerateOptions* options, const char* input,
-                         Setup* setup)
+                         pvtSetup* setup)
 {
     pvtStatus status = CheckEndings(run, options);
     if (status == PVT_OK) {
         status = CheckFiles(run, options, input);
     }
-    const bool isWord = strcmp(options->views, "all") == 0 || strcmp(options->views, "above") == 0;
-    if (status == PVT_OK && !isWord) {
-        status = pvtReadViewList(run, options->views, &setup->views);
-    }
-    if (status == PVT_OK && options->preview != NULL) {
-        status = CheckImages(run, options);
-    }
-    return status == PVT_OK ? OpenBackend(run, options, setup) : status;
-}
-
-static pvtStatus CreateSlicer(pvtContext* context, void* user, const pvtGridFrame* frame,
-                              const pvtMesh* voxelMesh, pvtSlicer* slicer)
-{
-    return pvtCreateStencilSlicer(context, user, frame, voxelMesh, slicer);
-}
-
-static void ReleaseSlicer(pvtContext* context, void* user, pvtSlicer* slicer)
-{
-    (void)user;
-    pvtReleaseStencilSlicer(context, slicer);
+    return status == PVT_OK ? pvtOpenSetup(run, options, setup) : status;
 }
 
 static pvtStatus Load(pvtRun* run, const pvtGenerateOptions* options, pvtGenerated* generated)
 {
-    pvtLoadOptions load = pvtDefaultLoadOptions();
-    load.scene = options->scene;
-    load.node = options->node;
-    load.masked = (pvtMasked)options->masked;
     generated->prepared = pvtGetClock();
-    const pvtStatus status = pvtLoadModel(run->context, &load, generated->input, &generated->model);
+    const pvtStatus status = pvtLoadInput(run, options, generated->input, &generated->model);
     generated->loaded = pvtGetClock();
     return status;
 }
 
-static pvtStatus Build(pvtRun* run, const pvtGenerateOptions* options, const Setup* setup,
+static pvtStatus Build(pvtRun* run, const pvtGenerateOptions* options, const pvtSetup* setup,
                        pvtGenerated* generated)
 {
-    pvtBuildOptions build = pvtGetBuildOptions(options, &setup->views);
-    if (setup->slicesOnGl) {
-        build.createSlicer = CreateSlicer;
-        build.releaseSlicer = ReleaseSlicer;
-        build.slicerUser = setup->gl;
-    }
+    const pvtBuildOptions build = pvtSetup_GetBuildOptions(setup, options);
     const pvtStatus status = pvtBuildOccluder(run->context, &build, &generated->model.mesh,
                                               &generated->occluder, &generated->stats);
     generated->built = pvtGetClock();
@@ -149,7 +70,7 @@ static pvtStatus Build(pvtRun* run, const pvtGenerateOptions* options, const Set
     return status;
 }
 
-static pvtStatus DrawPreview(pvtRun* run, const pvtGenerateOptions* options, const Setup* setup,
+static pvtStatus DrawPreview(pvtRun* run, const pvtGenerateOptions* options, const pvtSetup* setup,
                              pvtGenerated* generated, pvtImage* image)
 {
     pvtStatus status = PVT_OK;
@@ -191,7 +112,7 @@ static pvtStatus Save(pvtRun* run, const pvtGenerateOptions* options, pvtGenerat
     return status;
 }
 
-static pvtStatus Generate(pvtRun* run, const pvtGenerateOptions* options, const Setup* setup,
+static pvtStatus Generate(pvtRun* run, const pvtGenerateOptions* options, const pvtSetup* setup,
                           pvtGenerated* generated)
 {
     pvtImage image = {0};
@@ -215,14 +136,11 @@ static pvtStatus Generate(pvtRun* run, const pvtGenerateOptions* options, const 
     return status;
 }
 
-static void Release(pvtRun* run, Setup* setup, pvtGenerated* generated)
+static void Release(pvtRun* run, pvtSetup* setup, pvtGenerated* generated)
 {
     pvtOccluder_Free(run->context, &generated->occluder);
     pvtModel_Free(run->context, &generated->model);
-    if (setup->gl != NULL) {
-        pvtCloseGl(run->context, setup->gl);
-    }
-    pvtViewList_Free(&setup->views);
+    pvtSetup_Close(run, setup);
 }
 
 static int RunGenerate(int count, char* const* words)
@@ -235,7 +153,7 @@ static int RunGenerate(int count, char* const* words)
         return exitCode;
     }
     pvtRun run;
-    Setup setup = {0};
+    pvtSetup setup = {0};
     pvtGenerated generated = {.input = operands[0], .began = pvtGetClock()};
     pvtStatus status = pvtBeginRun(&options.common, &run);
     if (status == PVT_OK && options.error > 0.0 &&

@@ -3,6 +3,7 @@
 #ifndef PVT_APP_GENERATE_H
 #define PVT_APP_GENERATE_H
 
+#include "json.h"
 #include "run.h"
 #include "view_list.h"
 
@@ -32,6 +33,18 @@ typedef struct pvtGenerateOptions {
 
 extern const pvtSyntax pvtGenerateSyntax;
 
+/// Groups that other commands take, too: their structs begin with pvtGenerateOptions.
+extern const pvtOption pvtOptimizerOptionTable[]; ///< --method, --effort, --views, --seed
+extern const pvtOption pvtSolidOptionTable[];     ///< what counts as inside
+extern const pvtOption pvtInputOptionTable[];     ///< the part of the file to take
+extern const pvtOption pvtSlicerOptionTable[];    ///< --slicer
+enum {
+    PVT_OPTIMIZER_OPTION_COUNT = 4,
+    PVT_SOLID_OPTION_COUNT = 5,
+    PVT_INPUT_OPTION_COUNT = 3,
+    PVT_SLICER_OPTION_COUNT = 1,
+};
+
 pvtGenerateOptions pvtDefaultGenerateOptions(void);
 /// `views` holds what --views FILE said, and must stay as long as the result is used.
 pvtBuildOptions pvtGetBuildOptions(const pvtGenerateOptions* options, const pvtViewList* views);
@@ -51,6 +64,9 @@ pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
 /// The fields of the contract, in its order.
 pvtStatus pvtSaveStats(pvtRun* run, const pvtGenerateOptions* options,
                        const pvtGenerated* generated);
+/// The object "options": every option of the syntax but those that only say where results go.
+/// `options` may be the begin of a larger struct that the syntax fills.
+void pvtWriteOptions(pvtJson* json, const pvtSyntax* syntax, const pvtGenerateOptions* options);
 /// A few lines for people.
 void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGenerated* generated);
 

@@ -66,14 +66,6 @@ static const pvtOption occluderTable[] = {
      .most = INFINITY,
      .help = "how far a polygon may leave the strict interior; 0 hides nothing that can be seen, "
              "1vx is the paper's way"},
-    {.name = "method",
-     FIELD(PVT_OPTION_CHOICE, method),
-     .choices = methodChoices,
-     .help = "how polygons are chosen: by gain per triangle, or as in the paper"},
-    {.name = "effort",
-     FIELD(PVT_OPTION_CHOICE, effort),
-     .choices = effortChoices,
-     .help = "how long to go on improving the occluder; nothing to the paper's way"},
     {.name = "deadline",
      FIELD(PVT_OPTION_DOUBLE, deadline),
      .placeholder = "S",
@@ -83,6 +75,17 @@ static const pvtOption occluderTable[] = {
      .help =
          "seconds after which the best occluder so far is taken; the result then depends on the "
          "machine"},
+};
+
+const pvtOption pvtOptimizerOptionTable[] = {
+    {.name = "method",
+     FIELD(PVT_OPTION_CHOICE, method),
+     .choices = methodChoices,
+     .help = "how polygons are chosen: by gain per triangle, or as in the paper"},
+    {.name = "effort",
+     FIELD(PVT_OPTION_CHOICE, effort),
+     .choices = effortChoices,
+     .help = "how long to go on improving the occluder; nothing to the paper's way"},
     {.name = "views",
      FIELD(PVT_OPTION_TEXT, views),
      .placeholder = "all|above|FILE",
@@ -96,7 +99,7 @@ static const pvtOption occluderTable[] = {
      .help = "another one may give another occluder, the same one always the same"},
 };
 
-static const pvtOption solidTable[] = {
+const pvtOption pvtSolidOptionTable[] = {
     {.name = "smallest-hole",
      FIELD(PVT_OPTION_LENGTH, smallestHole),
      .placeholder = "D",
@@ -122,7 +125,7 @@ static const pvtOption solidTable[] = {
              "that helps where walls stand but do not meet"},
 };
 
-static const pvtOption inputTable[] = {
+const pvtOption pvtInputOptionTable[] = {
     {.name = "scene",
      FIELD(PVT_OPTION_INT, scene),
      .placeholder = "N",
@@ -141,13 +144,21 @@ static const pvtOption inputTable[] = {
      .help = "materials with an alpha mask: by their texture, as if opaque, or left out"},
 };
 
-static const pvtOption slicerTable[] = {
+const pvtOption pvtSlicerOptionTable[] = {
     {.name = "slicer",
      FIELD(PVT_OPTION_CHOICE, slicer),
      .choices = slicerChoices,
      .help = "where slices are made: on the CPU (sample) or by OpenGL; auto is the CPU unless EGL "
              "offers graphics hardware"},
 };
+
+#define CHECK_COUNT(table, count)                                                                  \
+    _Static_assert(sizeof(table) / sizeof *(table) == (count), "the counts in generate.h follow")
+
+CHECK_COUNT(pvtOptimizerOptionTable, PVT_OPTIMIZER_OPTION_COUNT);
+CHECK_COUNT(pvtSolidOptionTable, PVT_SOLID_OPTION_COUNT);
+CHECK_COUNT(pvtInputOptionTable, PVT_INPUT_OPTION_COUNT);
+CHECK_COUNT(pvtSlicerOptionTable, PVT_SLICER_OPTION_COUNT);
 
 #define GROUP(title, table)                                                                        \
     {                                                                                              \
@@ -157,9 +168,10 @@ static const pvtOption slicerTable[] = {
 static const pvtOptionGroup groups[] = {
     GROUP("Output", outputTable),
     GROUP("Occluder", occluderTable),
-    GROUP("What counts as inside", solidTable),
-    GROUP("Input", inputTable),
-    GROUP("Work", slicerTable),
+    GROUP("Optimizer", pvtOptimizerOptionTable),
+    GROUP("What counts as inside", pvtSolidOptionTable),
+    GROUP("Input", pvtInputOptionTable),
+    GROUP("Work", pvtSlicerOptionTable),
     {"Common", pvtCommonOptionTable, PVT_COMMON_OPTION_COUNT},
 };
 

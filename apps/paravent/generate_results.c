@@ -108,14 +108,14 @@ static bool IsSet(const pvtOption* option, const pvtGenerateOptions* options)
     return true;
 }
 
-static void WriteOptions(pvtJson* json, const pvtGenerateOptions* options)
+void pvtWriteOptions(pvtJson* json, const pvtSyntax* syntax, const pvtGenerateOptions* options)
 {
     static const char* const skipped[] = {"output", "stats",   "preview", "progress",
                                           "quiet",  "verbose", NULL};
     pvtJson_BeginObject(json, "options");
-    for (size_t group = 0; group < pvtGenerateSyntax.groupCount; ++group) {
-        for (size_t i = 0; i < pvtGenerateSyntax.groups[group].count; ++i) {
-            const pvtOption* option = &pvtGenerateSyntax.groups[group].options[i];
+    for (size_t group = 0; group < syntax->groupCount; ++group) {
+        for (size_t i = 0; i < syntax->groups[group].count; ++i) {
+            const pvtOption* option = &syntax->groups[group].options[i];
             bool isSkipped = false;
             for (size_t j = 0; skipped[j] != NULL; ++j) {
                 isSkipped = isSkipped || strcmp(option->name, skipped[j]) == 0;
@@ -149,7 +149,7 @@ static void WriteStats(pvtJson* json, const pvtRun* run, const pvtGenerateOption
     pvtJson_Integer(json, "outside", (int64_t)stats->outside);
     WriteSeconds(json, generated);
     pvtJson_Integer(json, "peak_bytes", (int64_t)pvtRun_GetPeakBytes(run));
-    WriteOptions(json, options);
+    pvtWriteOptions(json, &pvtGenerateSyntax, options);
     pvtJson_BeginArray(json, "warnings");
     for (size_t i = 0; i < run->report.warningCount; ++i) {
         pvtJson_String(json, NULL, run->report.warnings[i]);

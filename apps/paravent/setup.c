@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "setup.h"
+
+#include <string.h>
+
+const char* pvtGetViewFile(const pvtGenerateOptions* options)
+{
+    const bool isWord = strcmp(options->views, "all") == 0 || strcmp(options->views, "above") == 0;
+    return isWord ? NULL : options->views;
+}
+
+// One backend serves both: the one that slices, or for a preview alone any that is there.
+static pvtStatus OpenBackend(pvtRun* run, const pvtGenerateOptions* options, pvtSetup* setup)
+{
+    int slicer = options->slicer;
+    if (slicer == PVT_SLICER_AUTO) {
+        slicer = pvtHasGlHardware() ? PVT_SLICER_EGL : PVT_SLICER_SAMPLE;
+    }
+    setup->slicesOnGl = slicer == PVT_SLICER_EGL || slicer == PVT_SLICER_OSMESA;
+    if (!setup->slicesOnGl && options->preview == NULL) {
+        return PVT_OK;
+    }
+    const pvtGlBackend backend = slicer == PVT_SLICER_EGL      ? PVT_GL_EGL
+                                 : slicer == PVT_SLICER_OSMESA ? PVT_GL_OSMESA
+                                                               : PVT_GL_AUTO;
+    const pvtStatus status = pvtOpenGl(run->context, backend, &setup->gl);
+    if (status == PVT_OK) {
+        pvtReport_Detail(&run->report, "graphics: %s", pvtGl_GetName(setup->gl));
+    }
+    return status;
+}
+
+// Whether pictures can be written at all is seen by writing one, of a pixel, to nowhere.
+static pvtStatus CheckImages(pvtRun* run, const pvtGenerateOptions* options)
+{
+    static const char nowhere[] = "/dev/null";
+    pvtImage pixel = {0};
+    pvtStatus status = pvtCreateImage(run->context, 1, 1, &pixel);
+    if (status != PVT_OK) {
+        return status;
+    }
+    status = pvtSaveImage(run->context, nowhere, &pixel);
+    pvtImage_Free(run->context, &pixel);
+    if (status == PVT_OK) {
+        return PVT_OK;
+    }
+    const char* reason = pvtContext_GetMessage(run->context);
+    const size_t length = strlen(nowhere);
+    if (strncmp(reason, nowhere, length) == 0 && strncmp(reason + length, ": ", 2) == 0) {
+        reason += length + 2;
+    }
+    return pvtRun_Fail(run, status, "--preview %s: %s", options->preview, reason);
+}
+
+pvtStatus pvtOpenSetup(pvtRun* run, const pvtGenerateOptions* options, pvtSetup* setup)
+{
+    pvtStatus status = PVT_OK;
+    const char* viewFile = pvtGetViewFile(options);
+    if (viewFile != NULL) {
+        status = pvtReadViewList(run, viewFile, &setup->views);
+    }
+    if (status == PVT_OK && options->preview != NULL) {
+        status = CheckImages(run, options);
+    }
+    return status == PVT_OK ? OpenBackend(run, options, setup) : status;
+}
+
+static pvtStatus CreateSlicer(pvtContext* context, void* user, const pvtGridFrame* frame,
+                              const pvtMesh* voxelMesh, pvtSlicer* slicer)
+{
+    return pvtCreateStencilSlicer(context, user, frame, voxelMesh, slicer);
+}
+
+static void ReleaseSlicer(pvtContext* context, void* user, pvtSlicer* slicer)
+{
+    (void)user;
+    pvtReleaseStencilSlicer(context, slicer);
+}
+
+pvtBuildOptions pvtSetup_GetBuildOptions(const pvtSetup* setup, const pvtGenerateOptions* options)
+{
+    pvtBuildOptions build = pvtGetBuildOptions(options, &setup->views);
+    if (setup->slicesOnGl) {
+        build.createSlicer = CreateSlicer;
+        build.releaseSlicer = ReleaseSlicer;
+        build.slicerUser = setup->gl;
+    }
+    return build;
+}
+
+void pvtSetup_Close(pvtRun* run, pvtSetup* setup)
+{
+    if (setup->gl != NULL) {
+        pvtCloseGl(run->context, setup->gl);
+    }
+    pvtViewList_Free(&setup->views);
+    *setup = (pvtSetup){0};
+}
+
+pvtStatus pvtLoadInput(pvtRun* run, const pvtGenerateOptions* options, const char* path,
+                       pvtModel* model)
+{
+    pvtLoadOptions load = pvtDefaultLoadOptions();
+    load.scene = options->scene;
+    load.node = options->node;
+    load.masked = (pvtMasked)options->masked;
+    return pvtLoadModel(run->context, &load, path, model);
+}

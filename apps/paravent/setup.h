@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// What the commands that build occluders have in common: what is opened before the long work, so
+// that nothing missing is found behind it, and the input.
+#ifndef PVT_APP_SETUP_H
+#define PVT_APP_SETUP_H
+
+#include "generate.h"
+
+typedef struct pvtSetup {
+    pvtViewList views;
+    pvtGl* gl; ///< null: neither slicer nor preview needs it
+    bool slicesOnGl;
+} pvtSetup;
+
+/// The file that --views names, or null.
+const char* pvtGetViewFile(const pvtGenerateOptions* options);
+
+/// Reads the views, and sees whether slices and pictures can be made. Close it also on failure.
+pvtStatus pvtOpenSetup(pvtRun* run, const pvtGenerateOptions* options, pvtSetup* setup);
+/// What the line asks for, with the slicer that was opened. Borrows from both.
+pvtBuildOptions pvtSetup_GetBuildOptions(const pvtSetup* setup, const pvtGenerateOptions* options);
+void pvtSetup_Close(pvtRun* run, pvtSetup* setup);
+
+/// The model, or the part of it that the line names.
+pvtStatus pvtLoadInput(pvtRun* run, const pvtGenerateOptions* options, const char* path,
+                       pvtModel* model);
+
+#endif
