@@ -1,37 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "check.h"
+#include "voxel_shapes.h"
 
-#include "base/context.h"
-#include "base/random.h"
 #include "occluder/arrangement.h"
 
-#include <string.h>
-
 enum { SIDE = 48, PANELS = 6 };
-
-// A ball that leaves four voxels free on each side.
-static void MakeBall(pvtContext* context, pvtBitGrid* grid)
-{
-    *grid = (pvtBitGrid){.frame = {.voxelSize = 0.25, .size = {SIDE, SIDE, SIDE}},
-                         .wordsPerRow = 1,
-                         .wordCount = SIDE * SIDE};
-    grid->words = pvtAllocate(context, grid->wordCount, sizeof *grid->words);
-    assert_non_null(grid->words);
-    const double middle = SIDE / 2.0;
-    const double radius = middle - 4.0;
-    for (int z = 0; z < SIDE; ++z) {
-        for (int y = 0; y < SIDE; ++y) {
-            for (int x = 0; x < SIDE; ++x) {
-                const double dx = x + 0.5 - middle;
-                const double dy = y + 0.5 - middle;
-                const double dz = z + 0.5 - middle;
-                if (dx * dx + dy * dy + dz * dz < radius * radius) {
-                    grid->words[z * SIDE + y] |= UINT64_C(1) << x;
-                }
-            }
-        }
-    }
-}
 
 static void RollPanel(pvtRandom* random, const pvtGridFrame* frame, pvtPanel* panel)
 {
@@ -84,7 +56,10 @@ static void CheckIncrementalValues(int size)
 {
     pvtContext* context = CreateTestContext(1);
     pvtBitGrid grid;
-    MakeBall(context, &grid);
+    MakeEmptyGrid(context, SIDE, SIDE, SIDE, &grid);
+    grid.frame.voxelSize = 0.25;
+    // A ball that leaves four voxels free on each side.
+    SetBall(&grid, (pvtVec3){SIDE / 2.0, SIDE / 2.0, SIDE / 2.0}, SIDE / 2.0 - 4.0);
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
     pvtViewOptions viewOptions = pvtDefaultViewOptions();

@@ -1,32 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "check.h"
+#include "voxel_shapes.h"
 
-#include "base/context.h"
-#include "base/random.h"
 #include "base/vector.h"
 
-#include <math.h>
 #include <paravent/occluder.h>
 
-enum { SIDE = 20 };
-
-// Voxels 4 to 15 along each axis, but for one at `hole` (none when negative).
-static void MakeBlock(pvtContext* context, const int hole[3], pvtBitGrid* grid)
+// Voxels 4 to 15 along each axis.
+static void MakeBlock(pvtContext* context, pvtBitGrid* grid)
 {
-    *grid = (pvtBitGrid){
-        .frame = {.origin = {-3.0, 1.0, 2.0}, .voxelSize = 0.5, .size = {SIDE, SIDE, SIDE}},
-        .wordsPerRow = 1,
-        .wordCount = SIDE * SIDE};
-    grid->words = pvtAllocate(context, grid->wordCount, sizeof *grid->words);
-    assert_non_null(grid->words);
-    for (int z = 4; z < 16; ++z) {
-        for (int y = 4; y < 16; ++y) {
-            grid->words[z * SIDE + y] = UINT64_C(0xfff0);
-        }
-    }
-    if (hole[0] >= 0) {
-        grid->words[hole[2] * SIDE + hole[1]] &= ~(UINT64_C(1) << hole[0]);
-    }
+    MakeShiftedGrid(context, 20, 20, 20, grid);
+    SetBox(grid, (int[]){4, 4, 4}, (int[]){16, 16, 16});
 }
 
 // One triangle with corners in voxels.
@@ -48,12 +31,11 @@ static void a_planted_hole_is_found_by_every_plane_through_it(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
-    const int none[3] = {-1, -1, -1};
-    const int hole[3] = {10, 9, 8};
     pvtBitGrid whole;
     pvtBitGrid pierced;
-    MakeBlock(context, none, &whole);
-    MakeBlock(context, hole, &pierced);
+    MakeBlock(context, &whole);
+    MakeBlock(context, &pierced);
+    ClearVoxel(&pierced, 10, 9, 8);
     pvtRandom random = pvtMakeRandom(5, 5);
     const pvtVec3 center = {10.5, 9.5, 8.5};
     for (int round = 0; round < 300; ++round) {
@@ -76,9 +58,8 @@ static void what_reaches_out_by_more_than_the_slack_is_counted(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    const int none[3] = {-1, -1, -1};
     pvtBitGrid grid;
-    MakeBlock(context, none, &grid);
+    MakeBlock(context, &grid);
     for (int axis = 0; axis < 3; ++axis) {
         for (int side = 0; side < 2; ++side) {
             for (int beyond = 0; beyond < 3; ++beyond) {

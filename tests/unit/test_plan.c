@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "failures.h"
+#include "voxel_shapes.h"
 
-#include "base/bits.h"
-#include "base/context.h"
-#include "base/random.h"
 #include "base/vector.h"
 #include "section/directions.h"
 
@@ -11,36 +8,12 @@
 
 enum { ONE = 1 << PVT_PLANE_BITS };
 
-static pvtBitGrid MakeGrid(pvtContext* context, int sizeX, int sizeY, int sizeZ)
-{
-    pvtBitGrid grid = {.frame = {{1, 2, 3}, 0.5, {sizeX, sizeY, sizeZ}}};
-    grid.wordsPerRow = pvtGetWordCount((size_t)sizeX);
-    grid.wordCount = grid.wordsPerRow * (size_t)sizeY * (size_t)sizeZ;
-    grid.words = pvtAllocate(context, grid.wordCount, sizeof *grid.words);
-    assert_non_null(grid.words);
-    return grid;
-}
-
-static uint64_t* GetRow(const pvtBitGrid* grid, int y, int z)
-{
-    return grid->words + ((size_t)z * (size_t)grid->frame.size[1] + (size_t)y) * grid->wordsPerRow;
-}
-
-static void FillBox(const pvtBitGrid* grid, const int lower[3], const int upper[3])
-{
-    for (int z = lower[2]; z < upper[2]; ++z) {
-        for (int y = lower[1]; y < upper[1]; ++y) {
-            pvtSetBitRange(GetRow(grid, y, z), (size_t)lower[0], (size_t)upper[0]);
-        }
-    }
-}
-
-static void FillSparse(const pvtBitGrid* grid, pvtRandom* random, int count)
+static void FillSparse(pvtBitGrid* grid, pvtRandom* random, int count)
 {
     for (int i = 0; i < count; ++i) {
         const int y = (int)pvtRandom_Below(random, (uint32_t)grid->frame.size[1]);
         const int z = (int)pvtRandom_Below(random, (uint32_t)grid->frame.size[2]);
-        pvtSetBit(GetRow(grid, y, z), pvtRandom_Below(random, (uint32_t)grid->frame.size[0]));
+        SetVoxel(grid, (int)pvtRandom_Below(random, (uint32_t)grid->frame.size[0]), y, z);
     }
 }
 
@@ -58,7 +31,7 @@ static pvtOffsetRange FindRangeSlowly(const pvtBitGrid* grid, const pvtPlane* sh
     for (int z = 0; z < grid->frame.size[2]; ++z) {
         for (int y = 0; y < grid->frame.size[1]; ++y) {
             for (int x = 0; x < grid->frame.size[0]; ++x) {
-                for (int n = 0; n < 8 && pvtGetBit(GetRow(grid, y, z), (size_t)x); ++n) {
+                for (int n = 0; n < 8 && pvtBitGrid_Get(grid, x, y, z); ++n) {
                     const int corner[3] = {x + (n & 1), y + (n >> 1 & 1), z + (n >> 2)};
                     const int64_t offset = GetOffset(shape, corner);
                     range.lower = offset < range.lower ? offset : range.lower;
@@ -77,7 +50,8 @@ static void extents_are_those_of_the_farthest_corners_of_set_voxels(void** state
     pvtRandom random = pvtMakeRandom(20, 1);
     const pvtPlanOptions options = pvtDefaultPlanOptions();
     for (int trial = 0; trial < 12; ++trial) {
-        pvtBitGrid grid = MakeGrid(context, 20 + 30 * (trial % 3), 25, 15);
+        pvtBitGrid grid;
+        MakeShiftedGrid(context, 20 + 30 * (trial % 3), 25, 15, &grid);
         FillSparse(&grid, &random, trial < 2 ? 1 : 10 << (trial % 6));
         pvtPlanLine* lines;
         size_t count;
@@ -89,7 +63,7 @@ static void extents_are_those_of_the_farthest_corners_of_set_voxels(void** state
             assert_true(lines[i].range.upper == expected.upper);
         }
         pvtRelease(context, lines);
-        pvtRelease(context, grid.words);
+        pvtBitGrid_Free(context, &grid);
     }
     DestroyTestContext(context);
 }
@@ -131,7 +105,8 @@ static void planes_are_planned_ones_in_bins_of_one_direction_within_the_extents(
     const pvtFaceDirectionSet set = {faces, 2};
     pvtPlanOptions options = pvtDefaultPlanOptions();
     for (int trial = 0; trial < 4; ++trial) {
-        pvtBitGrid grid = MakeGrid(context, 40, 30, 35);
+        pvtBitGrid grid;
+        MakeShiftedGrid(context, 40, 30, 35, &grid);
         FillSparse(&grid, &random, 3000);
         options.faces = trial % 2 == 0 ? &set : NULL;
         options.depths = trial < 2 ? 24 : 3;
@@ -140,7 +115,7 @@ static void planes_are_planned_ones_in_bins_of_one_direction_within_the_extents(
         assert_true(plan.planeCount > 500);
         CheckPlan(&grid, &plan);
         pvtSectionPlan_Free(context, &plan);
-        pvtRelease(context, grid.words);
+        pvtBitGrid_Free(context, &grid);
     }
     DestroyTestContext(context);
 }
@@ -149,8 +124,9 @@ static void planes_across_an_axis_miss_no_layer_of_voxels(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(context, 200, 130, 70);
-    FillBox(&grid, (int[]){10, 20, 30}, (int[]){170, 121, 37});
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 200, 130, 70, &grid);
+    SetBox(&grid, (int[]){10, 20, 30}, (int[]){170, 121, 37});
     pvtPlanOptions options = pvtDefaultPlanOptions();
     options.directions = 0;
     pvtSectionPlan plan;
@@ -169,7 +145,7 @@ static void planes_across_an_axis_miss_no_layer_of_voxels(void** state)
         assert_int_equal(met[2][i], i >= 30 && i < 37);
     }
     pvtSectionPlan_Free(context, &plan);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -179,7 +155,8 @@ the_ends_of_a_slanted_face_are_tried_from_its_steps_down_to_where_all_is_covered
     (void)state;
     pvtContext* context = CreateTestContext(1);
     pvtRandom random = pvtMakeRandom(24, 1);
-    pvtBitGrid grid = MakeGrid(context, 50, 40, 30);
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 50, 40, 30, &grid);
     FillSparse(&grid, &random, 2000);
     pvtFaceDirection face = {{0.8, 0.48, 0.36}, 1.0};
     const pvtFaceDirectionSet faces = {&face, 1};
@@ -203,7 +180,7 @@ the_ends_of_a_slanted_face_are_tried_from_its_steps_down_to_where_all_is_covered
         assert_true(last >= covered && last < covered + 0.5);
     }
     pvtSectionPlan_Free(context, &plan);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -298,7 +275,8 @@ static void plans_are_the_same_for_any_number_of_threads(void** state)
     pvtContext* one = CreateTestContext(1);
     pvtContext* four = CreateTestContext(4);
     pvtRandom random = pvtMakeRandom(23, 1);
-    pvtBitGrid grid = MakeGrid(one, 70, 80, 90);
+    pvtBitGrid grid;
+    MakeShiftedGrid(one, 70, 80, 90, &grid);
     FillSparse(&grid, &random, 300);
     const pvtPlanOptions options = pvtDefaultPlanOptions();
     pvtSectionPlan a, b;
@@ -309,7 +287,7 @@ static void plans_are_the_same_for_any_number_of_threads(void** state)
     assert_memory_equal(a.binStarts, b.binStarts, (a.binCount + 1) * sizeof *a.binStarts);
     pvtSectionPlan_Free(one, &a);
     pvtSectionPlan_Free(four, &b);
-    pvtRelease(one, grid.words);
+    pvtBitGrid_Free(one, &grid);
     DestroyTestContext(one);
     DestroyTestContext(four);
 }
@@ -318,13 +296,14 @@ static void an_empty_grid_has_an_empty_plan(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(context, 10, 10, 10);
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 10, 10, 10, &grid);
     const pvtPlanOptions options = pvtDefaultPlanOptions();
     pvtSectionPlan plan;
     CHECK_OK(context, pvtPlanSections(context, &options, &grid, &plan));
     assert_true(plan.planeCount == 0 && plan.binCount == 0);
     pvtSectionPlan_Free(context, &plan);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -332,7 +311,8 @@ static void options_out_of_range_are_refused(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(context, 10, 10, 10);
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 10, 10, 10, &grid);
     for (int i = 0; i < 8; ++i) {
         pvtPlanOptions options = pvtDefaultPlanOptions();
         options.directions = i == 0 ? -1 : i == 1 ? 4097 : options.directions;
@@ -343,7 +323,7 @@ static void options_out_of_range_are_refused(void** state)
         assert_int_equal(pvtPlanSections(context, &options, &grid, &plan), PVT_INVALID_ARGUMENT);
         assert_null(plan.planes);
     }
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -352,13 +332,14 @@ static void a_cancelled_plan_is_empty(void** state)
     (void)state;
     CancelCounter counter = {0};
     pvtContext* context = CreateCancelledContext(&counter, 2);
-    pvtBitGrid grid = MakeGrid(context, 10, 10, 10);
-    FillBox(&grid, (int[]){1, 1, 1}, (int[]){9, 9, 9});
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 10, 10, 10, &grid);
+    SetBox(&grid, (int[]){1, 1, 1}, (int[]){9, 9, 9});
     const pvtPlanOptions options = pvtDefaultPlanOptions();
     pvtSectionPlan plan;
     assert_int_equal(pvtPlanSections(context, &options, &grid, &plan), PVT_CANCELLED);
     assert_null(plan.planes);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -366,8 +347,9 @@ static void every_failing_allocation_leaves_an_empty_plan(void** state)
 {
     (void)state;
     pvtContext* plenty = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(plenty, 10, 10, 10);
-    FillBox(&grid, (int[]){1, 1, 1}, (int[]){9, 9, 9});
+    pvtBitGrid grid;
+    MakeShiftedGrid(plenty, 10, 10, 10, &grid);
+    SetBox(&grid, (int[]){1, 1, 1}, (int[]){9, 9, 9});
     const pvtPlanOptions options = pvtDefaultPlanOptions();
     bool made = false;
     for (int failAt = 1; !made; ++failAt) {
@@ -381,7 +363,7 @@ static void every_failing_allocation_leaves_an_empty_plan(void** state)
         pvtSectionPlan_Free(context, &plan);
         DestroyTestContext(context);
     }
-    pvtRelease(plenty, grid.words);
+    pvtBitGrid_Free(plenty, &grid);
     DestroyTestContext(plenty);
 }
 

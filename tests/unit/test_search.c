@@ -1,42 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include "failures.h"
-
-#include "base/bits.h"
-#include "base/context.h"
+#include "voxel_shapes.h"
 
 #include <math.h>
 #include <paravent/section.h>
 #include <string.h>
 
-static pvtBitGrid MakeGrid(pvtContext* context, int sizeX, int sizeY, int sizeZ)
-{
-    pvtBitGrid grid = {.frame = {{1, 2, 3}, 0.5, {sizeX, sizeY, sizeZ}}};
-    grid.wordsPerRow = pvtGetWordCount((size_t)sizeX);
-    grid.wordCount = grid.wordsPerRow * (size_t)sizeY * (size_t)sizeZ;
-    grid.words = pvtAllocate(context, grid.wordCount, sizeof *grid.words);
-    assert_non_null(grid.words);
-    return grid;
-}
-
-static void FillBox(const pvtBitGrid* grid, const int lower[3], const int upper[3])
-{
-    for (int z = lower[2]; z < upper[2]; ++z) {
-        for (int y = lower[1]; y < upper[1]; ++y) {
-            const size_t row = (size_t)z * (size_t)grid->frame.size[1] + (size_t)y;
-            pvtSetBitRange(grid->words + row * grid->wordsPerRow, (size_t)lower[0],
-                           (size_t)upper[0]);
-        }
-    }
-}
-
 // A shape with thick and thin parts, apart from each other.
 static pvtBitGrid MakeLumps(pvtContext* context)
 {
-    pvtBitGrid grid = MakeGrid(context, 70, 40, 50);
-    FillBox(&grid, (int[]){3, 4, 5}, (int[]){30, 30, 9});
-    FillBox(&grid, (int[]){10, 14, 3}, (int[]){13, 38, 44});
-    FillBox(&grid, (int[]){48, 5, 10}, (int[]){66, 25, 47});
-    FillBox(&grid, (int[]){20, 33, 20}, (int[]){32, 34, 40});
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 70, 40, 50, &grid);
+    SetBox(&grid, (int[]){3, 4, 5}, (int[]){30, 30, 9});
+    SetBox(&grid, (int[]){10, 14, 3}, (int[]){13, 38, 44});
+    SetBox(&grid, (int[]){48, 5, 10}, (int[]){66, 25, 47});
+    SetBox(&grid, (int[]){20, 33, 20}, (int[]){32, 34, 40});
     return grid;
 }
 
@@ -116,7 +93,7 @@ static void each_bin_gives_its_first_largest_slice_or_none(void** state)
     }
     pvtSectionPlan_Free(context, &plan);
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -146,7 +123,7 @@ static void areas_are_those_of_the_rule_and_cells_asked_for(void** state)
     }
     pvtSectionPlan_Free(context, &plan);
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -154,9 +131,10 @@ static void the_faces_of_a_box_are_found_in_full_at_both_ends(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(context, 50, 60, 70);
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 50, 60, 70, &grid);
     const int lower[3] = {5, 7, 9}, upper[3] = {41, 52, 66};
-    FillBox(&grid, lower, upper);
+    SetBox(&grid, lower, upper);
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
     pvtSectionPlan plan = MakePlan(context, &grid);
@@ -180,7 +158,7 @@ static void the_faces_of_a_box_are_found_in_full_at_both_ends(void** state)
     pvtSectionSet_Free(context, &set);
     pvtSectionPlan_Free(context, &plan);
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -189,9 +167,10 @@ static void a_slanted_face_is_found_in_full_just_below_its_steps(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(context, 64, 64, 64);
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 64, 64, 64, &grid);
     for (int y = 2; y < 58; ++y) {
-        FillBox(&grid, (int[]){2, y, 2}, (int[]){60 - y > 2 ? 60 - y - 1 : 2, y + 1, 62});
+        SetBox(&grid, (int[]){2, y, 2}, (int[]){60 - y > 2 ? 60 - y - 1 : 2, y + 1, 62});
     }
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
@@ -209,7 +188,7 @@ static void a_slanted_face_is_found_in_full_just_below_its_steps(void** state)
     pvtSectionSet_Free(context, &set);
     pvtSectionPlan_Free(context, &plan);
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -257,7 +236,7 @@ static void sections_are_the_same_for_any_number_of_threads_and_any_slicer(void*
     }
     pvtSectionPlan_Free(contexts[0], &plan);
     pvtSliceVolume_Free(contexts[0], &volume);
-    pvtRelease(contexts[0], grid.words);
+    pvtBitGrid_Free(contexts[0], &grid);
     DestroyTestContext(contexts[0]);
     DestroyTestContext(contexts[1]);
 }
@@ -284,7 +263,7 @@ static void a_slicer_that_fails_ends_the_search(void** state)
                      PVT_INVALID_ARGUMENT);
     pvtSectionPlan_Free(context, &plan);
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -292,7 +271,8 @@ static void an_empty_plan_gives_an_empty_set(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(context, 20, 20, 20);
+    pvtBitGrid grid;
+    MakeShiftedGrid(context, 20, 20, 20, &grid);
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
     pvtSectionPlan plan = MakePlan(context, &grid);
@@ -303,7 +283,7 @@ static void an_empty_plan_gives_an_empty_set(void** state)
     pvtSectionSet_Free(context, &set);
     pvtSectionPlan_Free(context, &plan);
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -369,7 +349,7 @@ static void a_search_can_be_cancelled_anywhere_and_fails_cleanly_without_memory(
     assert_true(hooks.reported > 0.1);
     pvtSectionPlan_Free(context, &plan);
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 

@@ -18,28 +18,12 @@ typedef struct Fixture {
     pvtSelectOptions options;
 } Fixture;
 
-static void SetBall(pvtBitGrid* grid, double middle, double radius)
-{
-    for (int z = 0; z < SIDE; ++z) {
-        for (int y = 0; y < SIDE; ++y) {
-            for (int x = 0; x < SIDE; ++x) {
-                const double dx = x + 0.5 - middle;
-                const double dy = y + 0.5 - SIDE / 2.0;
-                const double dz = z + 0.5 - SIDE / 2.0;
-                if (dx * dx + dy * dy + dz * dz < radius * radius) {
-                    SetVoxel(grid, x, y, z);
-                }
-            }
-        }
-    }
-}
-
 static void CreateFixture(pvtContext* context, Fixture* fixture)
 {
     *fixture = (Fixture){0};
     MakeEmptyGrid(context, SIDE, SIDE, SIDE, &fixture->grid);
-    SetBall(&fixture->grid, 14.0, 11.0);
-    SetBall(&fixture->grid, 31.0, 5.0);
+    SetBall(&fixture->grid, (pvtVec3){14.0, SIDE / 2.0, SIDE / 2.0}, 11.0);
+    SetBall(&fixture->grid, (pvtVec3){31.0, SIDE / 2.0, SIDE / 2.0}, 5.0);
     CHECK_OK(context, pvtCreateSliceVolume(context, &fixture->grid, &fixture->volume));
     pvtPlanOptions plan = pvtDefaultPlanOptions();
     plan.directions = 8;

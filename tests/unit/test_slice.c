@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "failures.h"
-
-#include "base/bits.h"
-#include "base/context.h"
-#include "base/random.h"
+#include "voxel_shapes.h"
 
 #include <math.h>
 #include <paravent/section.h>
@@ -11,62 +7,6 @@
 #include <string.h>
 
 enum { ONE = 1 << PVT_PLANE_BITS };
-
-// Grids made by hand, so that this test stands on nothing but base.
-static pvtBitGrid MakeGrid(pvtContext* context, int sizeX, int sizeY, int sizeZ)
-{
-    pvtBitGrid grid = {.frame = {{0, 0, 0}, 1.0, {sizeX, sizeY, sizeZ}}};
-    grid.wordsPerRow = pvtGetWordCount((size_t)sizeX);
-    grid.wordCount = grid.wordsPerRow * (size_t)sizeY * (size_t)sizeZ;
-    grid.words = pvtAllocate(context, grid.wordCount, sizeof *grid.words);
-    assert_non_null(grid.words);
-    return grid;
-}
-
-static uint64_t* GetGridRow(const pvtBitGrid* grid, int y, int z)
-{
-    return grid->words + ((size_t)z * (size_t)grid->frame.size[1] + (size_t)y) * grid->wordsPerRow;
-}
-
-static bool IsSet(const pvtBitGrid* grid, const int64_t position[3])
-{
-    for (int axis = 0; axis < 3; ++axis) {
-        if (position[axis] < 0 || position[axis] >= grid->frame.size[axis]) {
-            return false;
-        }
-    }
-    return pvtGetBit(GetGridRow(grid, (int)position[1], (int)position[2]), (size_t)position[0]);
-}
-
-// Each voxel is set with a chance of `part` in 256.
-static void FillRandom(const pvtBitGrid* grid, pvtRandom* random, uint32_t part)
-{
-    for (int z = 0; z < grid->frame.size[2]; ++z) {
-        for (int y = 0; y < grid->frame.size[1]; ++y) {
-            for (int x = 0; x < grid->frame.size[0]; ++x) {
-                if (pvtRandom_Below(random, 256) < part) {
-                    pvtSetBit(GetGridRow(grid, y, z), (size_t)x);
-                }
-            }
-        }
-    }
-}
-
-static void FillBall(const pvtBitGrid* grid, double radius)
-{
-    const int* size = grid->frame.size;
-    for (int z = 0; z < size[2]; ++z) {
-        for (int y = 0; y < size[1]; ++y) {
-            for (int x = 0; x < size[0]; ++x) {
-                const double dx = x + 0.5 - 0.5 * size[0], dy = y + 0.5 - 0.5 * size[1];
-                const double dz = z + 0.5 - 0.5 * size[2];
-                if (dx * dx + dy * dy + dz * dz < radius * radius) {
-                    pvtSetBit(GetGridRow(grid, y, z), (size_t)x);
-                }
-            }
-        }
-    }
-}
 
 static pvtBitmap MakeSliceBitmap(pvtContext* context, const pvtBitGrid* grid, const pvtPlane* plane,
                                  int cells)
@@ -108,12 +48,12 @@ static bool AskOracle(const pvtBitGrid* grid, const pvtPlane* plane, pvtSliceRul
                                              (int64_t)cell[1] * step + step / 2),
                                    one);
     }
-    int64_t position[3] = {0};
+    int position[3] = {0};
     position[pvtPlane_GetU(plane)] = cell[0] / cells;
     position[pvtPlane_GetV(plane)] = cell[1] / cells;
     for (int64_t n = first; n <= last; ++n) {
-        position[plane->axis] = n;
-        if (!IsSet(grid, position)) {
+        position[plane->axis] = (int)n;
+        if (!pvtBitGrid_Get(grid, position[0], position[1], position[2])) {
             return false;
         }
     }
@@ -178,8 +118,9 @@ static void slices_agree_with_a_look_at_every_voxel(void** state)
     pvtRandom random = pvtMakeRandom(7, 1);
     for (int trial = 0; trial < 12; ++trial) {
         const int* size = sizes[trial % 4];
-        pvtBitGrid grid = MakeGrid(context, size[0], size[1], size[2]);
-        FillRandom(&grid, &random, trial % 3 == 0 ? 128 : trial % 3 == 1 ? 240 : 256);
+        pvtBitGrid grid;
+        MakeEmptyGrid(context, size[0], size[1], size[2], &grid);
+        FillRandomly(&grid, &random, trial % 3 == 0 ? 50 : trial % 3 == 1 ? 94 : 100);
         pvtSliceVolume volume;
         CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
         for (int axis = 0; axis < 3; ++axis) {
@@ -190,7 +131,7 @@ static void slices_agree_with_a_look_at_every_voxel(void** state)
             }
         }
         pvtSliceVolume_Free(context, &volume);
-        pvtRelease(context, grid.words);
+        pvtBitGrid_Free(context, &grid);
     }
     DestroyTestContext(context);
 }
@@ -200,8 +141,9 @@ static void patches_that_reach_corners_exactly_touch_four_voxels(void** state)
     (void)state;
     pvtContext* context = CreateTestContext(1);
     pvtRandom random = pvtMakeRandom(12, 1);
-    pvtBitGrid grid = MakeGrid(context, 70, 70, 70);
-    FillRandom(&grid, &random, 220);
+    pvtBitGrid grid;
+    MakeEmptyGrid(context, 70, 70, 70, &grid);
+    FillRandomly(&grid, &random, 86);
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
     for (int n = 0; n < 12; ++n) {
@@ -211,7 +153,7 @@ static void patches_that_reach_corners_exactly_touch_four_voxels(void** state)
         CheckAllSlices(context, &volume, &plane);
     }
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -220,8 +162,9 @@ static void planes_outside_the_grid_have_no_slice(void** state)
     (void)state;
     pvtContext* context = CreateTestContext(1);
     pvtRandom random = pvtMakeRandom(8, 1);
-    pvtBitGrid grid = MakeGrid(context, 66, 20, 20);
-    FillRandom(&grid, &random, 256);
+    pvtBitGrid grid;
+    MakeEmptyGrid(context, 66, 20, 20, &grid);
+    FillRandomly(&grid, &random, 100);
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
     for (int axis = 0; axis < 3; ++axis) {
@@ -234,7 +177,7 @@ static void planes_outside_the_grid_have_no_slice(void** state)
         }
     }
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -248,13 +191,13 @@ static void CheckCoveredPatches(const pvtBitGrid* grid, const pvtPlane* plane, i
             const double u = (i + (point % 5) / 4.0) / cells, v = (j + point / 5 / 4.0) / cells;
             const double height =
                 ((double)plane->offset + plane->slopeU * u + plane->slopeV * v) / ONE;
-            int64_t position[3] = {0};
+            int position[3] = {0};
             position[pvtPlane_GetU(plane)] = i / cells;
             position[pvtPlane_GetV(plane)] = j / cells;
-            position[plane->axis] = (int64_t)floor(height);
-            assert_true(IsSet(grid, position));
-            position[plane->axis] = (int64_t)ceil(height) - 1;
-            assert_true(IsSet(grid, position));
+            position[plane->axis] = (int)floor(height);
+            assert_true(pvtBitGrid_Get(grid, position[0], position[1], position[2]));
+            position[plane->axis] = (int)ceil(height) - 1;
+            assert_true(pvtBitGrid_Get(grid, position[0], position[1], position[2]));
         }
     }
 }
@@ -266,8 +209,9 @@ static void covered_cells_touch_no_clear_voxel_and_have_their_centre_set(void** 
     pvtRandom random = pvtMakeRandom(9, 1);
     uint64_t covered = 0, centered = 0;
     for (int trial = 0; trial < 10; ++trial) {
-        pvtBitGrid grid = MakeGrid(context, 40, 30, 35);
-        FillRandom(&grid, &random, 230);
+        pvtBitGrid grid;
+        MakeEmptyGrid(context, 40, 30, 35, &grid);
+        FillRandomly(&grid, &random, 90);
         pvtSliceVolume volume;
         CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
         for (int axis = 0; axis < 3; ++axis) {
@@ -287,7 +231,7 @@ static void covered_cells_touch_no_clear_voxel_and_have_their_centre_set(void** 
             pvtBitmap_Free(context, &center);
         }
         pvtSliceVolume_Free(context, &volume);
-        pvtRelease(context, grid.words);
+        pvtBitGrid_Free(context, &grid);
     }
     assert_true(covered > 1000 && covered < centered);
     DestroyTestContext(context);
@@ -315,8 +259,9 @@ static void slices_of_a_ball_have_the_area_of_a_disk_in_any_direction(void** sta
     (void)state;
     pvtContext* context = CreateTestContext(1);
     const double radius = 45.0, pi = 3.14159265358979;
-    pvtBitGrid grid = MakeGrid(context, 100, 100, 100);
-    FillBall(&grid, radius);
+    pvtBitGrid grid;
+    MakeEmptyGrid(context, 100, 100, 100, &grid);
+    SetBall(&grid, (pvtVec3){50.0, 50.0, 50.0}, radius);
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
     pvtRandom random = pvtMakeRandom(10, 1);
@@ -329,7 +274,7 @@ static void slices_of_a_ball_have_the_area_of_a_disk_in_any_direction(void** sta
         assert_true(fabs(area - disk) < 0.02 * disk);
     }
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -337,8 +282,9 @@ static void the_axes_are_alike(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(context, 80, 80, 80);
-    FillBall(&grid, 37.5);
+    pvtBitGrid grid;
+    MakeEmptyGrid(context, 80, 80, 80, &grid);
+    SetBall(&grid, (pvtVec3){40.0, 40.0, 40.0}, 37.5);
     pvtSliceVolume volume;
     CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
     for (int cells = 1; cells <= 4; cells *= 2) {
@@ -353,7 +299,7 @@ static void the_axes_are_alike(void** state)
         }
     }
     pvtSliceVolume_Free(context, &volume);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -363,8 +309,9 @@ static void a_volume_is_the_same_for_any_number_of_threads_and_leaks_nothing(voi
     pvtContext* one = CreateTestContext(1);
     pvtContext* four = CreateTestContext(4);
     pvtRandom random = pvtMakeRandom(11, 1);
-    pvtBitGrid grid = MakeGrid(one, 100, 70, 90);
-    FillRandom(&grid, &random, 20);
+    pvtBitGrid grid;
+    MakeEmptyGrid(one, 100, 70, 90, &grid);
+    FillRandomly(&grid, &random, 8);
     pvtSliceVolume a, b;
     CHECK_OK(one, pvtCreateSliceVolume(one, &grid, &a));
     CHECK_OK(four, pvtCreateSliceVolume(four, &grid, &b));
@@ -377,7 +324,7 @@ static void a_volume_is_the_same_for_any_number_of_threads_and_leaks_nothing(voi
     }
     pvtSliceVolume_Free(one, &a);
     pvtSliceVolume_Free(four, &b);
-    pvtRelease(one, grid.words);
+    pvtBitGrid_Free(one, &grid);
     DestroyTestContext(one);
     DestroyTestContext(four);
 }
@@ -386,7 +333,8 @@ static void a_volume_that_does_not_fit_is_left_empty(void** state)
 {
     (void)state;
     pvtContext* plenty = CreateTestContext(1);
-    pvtBitGrid grid = MakeGrid(plenty, 20, 20, 20);
+    pvtBitGrid grid;
+    MakeEmptyGrid(plenty, 20, 20, 20, &grid);
     bool made = false;
     for (int failAt = 1; !made; ++failAt) {
         PoorHeap heap = {.failAt = failAt};
@@ -398,7 +346,7 @@ static void a_volume_that_does_not_fit_is_left_empty(void** state)
         pvtSliceVolume_Free(context, &volume);
         DestroyTestContext(context);
     }
-    pvtRelease(plenty, grid.words);
+    pvtBitGrid_Free(plenty, &grid);
     DestroyTestContext(plenty);
 }
 

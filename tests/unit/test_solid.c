@@ -271,12 +271,6 @@ static void SetHollowBox(pvtBitGrid* grid, const int lower[3], const int upper[3
     }
 }
 
-static void ClearVoxel(pvtBitGrid* grid, int x, int y, int z)
-{
-    const size_t row = (size_t)z * (size_t)grid->frame.size[1] + (size_t)y;
-    grid->words[row * grid->wordsPerRow + (size_t)x / 64] &= ~(UINT64_C(1) << (x % 64));
-}
-
 // A box of 12 × 12 × 12 free voxels with a square hole in its roof.
 static void MakeOpenBox(pvtContext* context, int padding, int hole, pvtBitGrid* surface)
 {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stencil's slices against a lookup of each cell's centre, and against the CPU slicer.
-#include "failures.h"
-
-#include "base/bits.h"
-#include "base/context.h"
-#include "base/random.h"
 #include "stencil_check.h"
+#include "voxel_shapes.h"
 
 #include <limits.h>
 #include <math.h>
@@ -46,34 +42,21 @@ static bool IsInNoise(double x, double y, double z)
 // A grid with three different sides, the solid up to its border.
 static pvtBitGrid MakeGrid(pvtContext* context, SolidFcn* solid, const int size[3])
 {
-    pvtBitGrid grid = {.frame = {{-3.0, 0.7, 12.0}, 0.3, {size[0], size[1], size[2]}}};
-    grid.wordsPerRow = pvtGetWordCount((size_t)size[0]);
-    grid.wordCount = grid.wordsPerRow * (size_t)size[1] * (size_t)size[2];
-    grid.words = pvtAllocate(context, grid.wordCount, sizeof *grid.words);
-    assert_non_null(grid.words);
+    pvtBitGrid grid;
+    MakeEmptyGrid(context, size[0], size[1], size[2], &grid);
+    grid.frame.origin = (pvtVec3){-3.0, 0.7, 12.0};
+    grid.frame.voxelSize = 0.3;
     for (int z = 0; z < size[2]; ++z) {
         for (int y = 0; y < size[1]; ++y) {
-            uint64_t* row = grid.words + (size_t)(z * size[1] + y) * grid.wordsPerRow;
             for (int x = 0; x < size[0]; ++x) {
                 if (solid((2 * x + 1.0) / size[0] - 1, (2 * y + 1.0) / size[1] - 1,
                           (2 * z + 1.0) / size[2] - 1)) {
-                    pvtSetBit(row, (size_t)x);
+                    SetVoxel(&grid, x, y, z);
                 }
             }
         }
     }
     return grid;
-}
-
-static bool IsSet(const pvtBitGrid* grid, const int at[3])
-{
-    for (int axis = 0; axis < 3; ++axis) {
-        if (at[axis] < 0 || at[axis] >= grid->frame.size[axis]) {
-            return false;
-        }
-    }
-    const size_t row = (size_t)(at[2] * grid->frame.size[1] + at[1]) * grid->wordsPerRow;
-    return pvtGetBit(grid->words + row, (size_t)at[0]);
 }
 
 static bool LookUpCell(const pvtBitGrid* grid, const pvtPlane* plane, int cellsPerVoxel, int i,
@@ -88,7 +71,7 @@ static bool LookUpCell(const pvtBitGrid* grid, const pvtPlane* plane, int cellsP
     at[plane->axis] = (int)(height / voxel);
     at[pvtPlane_GetU(plane)] = i / cellsPerVoxel;
     at[pvtPlane_GetV(plane)] = j / cellsPerVoxel;
-    return IsSet(grid, at);
+    return pvtBitGrid_Get(grid, at[0], at[1], at[2]);
 }
 
 // Cells counted over all checks, so that the share of mismatches can be judged too.
@@ -165,7 +148,7 @@ static void CheckSolid(pvtContext* context, pvtGl* gl, SolidFcn* solid, Tally* t
     }
     pvtReleaseStencilSlicer(context, &slicer);
     pvtMesh_Free(context, &mesh);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
 }
 
 static void a_slice_holds_the_cells_whose_centres_are_inside(void** state)
@@ -242,7 +225,7 @@ static void three_slicers_agree(void** state)
         pvtCloseGl(context, gls[b]);
     }
     pvtMesh_Free(context, &mesh);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     DestroyTestContext(context);
 }
 
@@ -273,7 +256,7 @@ static void a_plane_past_the_grid_slices_nothing(void** state)
     pvtBitmap_Free(context, &slice);
     pvtReleaseStencilSlicer(context, &slicer);
     pvtMesh_Free(context, &mesh);
-    pvtRelease(context, grid.words);
+    pvtBitGrid_Free(context, &grid);
     pvtCloseGl(context, gl);
     DestroyTestContext(context);
 }

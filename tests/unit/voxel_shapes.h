@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "base/random.h"
+#include "voxel/bit_grid.h"
 
 #include <paravent/voxel.h>
 #include <string.h>
@@ -27,17 +28,52 @@ static inline void MakeBoxMesh(pvtContext* context, pvtVec3 lower, pvtVec3 upper
 /// An empty grid of unit voxels at the origin.
 static inline void MakeEmptyGrid(pvtContext* context, int x, int y, int z, pvtBitGrid* grid)
 {
-    *grid = (pvtBitGrid){.frame = {{0.0, 0.0, 0.0}, 1.0, {x, y, z}}};
-    grid->wordsPerRow = ((size_t)x + 63) / 64;
-    grid->wordCount = grid->wordsPerRow * (size_t)y * (size_t)z;
-    grid->words = pvtAllocate(context, grid->wordCount, sizeof *grid->words);
-    assert_non_null(grid->words);
+    const pvtGridFrame frame = {{0.0, 0.0, 0.0}, 1.0, {x, y, z}};
+    CHECK_OK(context, pvtCreateBitGrid(context, &frame, grid));
+}
+
+/// The same with voxels of half the size, off the origin, so that voxels and world differ.
+static inline void MakeShiftedGrid(pvtContext* context, int x, int y, int z, pvtBitGrid* grid)
+{
+    const pvtGridFrame frame = {{1.0, 2.0, 3.0}, 0.5, {x, y, z}};
+    CHECK_OK(context, pvtCreateBitGrid(context, &frame, grid));
 }
 
 static inline void SetVoxel(pvtBitGrid* grid, int x, int y, int z)
 {
-    const size_t row = (size_t)z * (size_t)grid->frame.size[1] + (size_t)y;
-    grid->words[row * grid->wordsPerRow + (size_t)x / 64] |= UINT64_C(1) << (x % 64);
+    pvtSetBit(pvtBitGrid_GetRow(grid, y, z), (size_t)x);
+}
+
+static inline void ClearVoxel(pvtBitGrid* grid, int x, int y, int z)
+{
+    pvtClearBit(pvtBitGrid_GetRow(grid, y, z), (size_t)x);
+}
+
+/// Sets the voxels from lower to upper − 1 along each axis.
+static inline void SetBox(pvtBitGrid* grid, const int lower[3], const int upper[3])
+{
+    for (int z = lower[2]; z < upper[2]; ++z) {
+        for (int y = lower[1]; y < upper[1]; ++y) {
+            pvtSetBitRange(pvtBitGrid_GetRow(grid, y, z), (size_t)lower[0], (size_t)upper[0]);
+        }
+    }
+}
+
+/// Sets the voxels whose centres are nearer to `center` than `radius`, all in voxels.
+static inline void SetBall(pvtBitGrid* grid, pvtVec3 center, double radius)
+{
+    for (int z = 0; z < grid->frame.size[2]; ++z) {
+        for (int y = 0; y < grid->frame.size[1]; ++y) {
+            for (int x = 0; x < grid->frame.size[0]; ++x) {
+                const double dx = x + 0.5 - center.x;
+                const double dy = y + 0.5 - center.y;
+                const double dz = z + 0.5 - center.z;
+                if (dx * dx + dy * dy + dz * dz < radius * radius) {
+                    SetVoxel(grid, x, y, z);
+                }
+            }
+        }
+    }
 }
 
 /// Sets each voxel with a chance of `percent`.
