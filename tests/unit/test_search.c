@@ -5,29 +5,43 @@
 #include <paravent/section.h>
 #include <string.h>
 
-// A shape with thick and thin parts, apart from each other.
-static pvtBitGrid MakeLumps(pvtContext* context)
-{
+// What a search looks into, and where.
+typedef struct Field {
     pvtBitGrid grid;
-    MakeShiftedGrid(context, 70, 40, 50, &grid);
-    SetBox(&grid, (int[]){3, 4, 5}, (int[]){30, 30, 9});
-    SetBox(&grid, (int[]){10, 14, 3}, (int[]){13, 38, 44});
-    SetBox(&grid, (int[]){48, 5, 10}, (int[]){66, 25, 47});
-    SetBox(&grid, (int[]){20, 33, 20}, (int[]){32, 34, 40});
-    return grid;
-}
+    pvtSliceVolume volume;
+    pvtSectionPlan plan;
+} Field;
 
-static pvtSectionPlan MakePlan(pvtContext* context, const pvtBitGrid* grid)
+// For a grid that is made and filled already.
+static void PlanField(pvtContext* context, Field* field)
 {
+    CHECK_OK(context, pvtCreateSliceVolume(context, &field->grid, &field->volume));
     pvtFaceDirection face = {{sqrt(0.5), sqrt(0.5), 0.0}, 1.0};
     const pvtFaceDirectionSet faces = {&face, 1};
     pvtPlanOptions options = pvtDefaultPlanOptions();
     options.faces = &faces;
     options.directions = 12;
     options.depths = 9;
-    pvtSectionPlan plan;
-    CHECK_OK(context, pvtPlanSections(context, &options, grid, &plan));
-    return plan;
+    CHECK_OK(context, pvtPlanSections(context, &options, &field->grid, &field->plan));
+}
+
+// A shape with thick and thin parts, apart from each other.
+static void MakeLumps(pvtContext* context, Field* field)
+{
+    pvtBitGrid* grid = &field->grid;
+    MakeShiftedGrid(context, 70, 40, 50, grid);
+    SetBox(grid, (int[]){3, 4, 5}, (int[]){30, 30, 9});
+    SetBox(grid, (int[]){10, 14, 3}, (int[]){13, 38, 44});
+    SetBox(grid, (int[]){48, 5, 10}, (int[]){66, 25, 47});
+    SetBox(grid, (int[]){20, 33, 20}, (int[]){32, 34, 40});
+    PlanField(context, field);
+}
+
+static void FreeField(pvtContext* context, Field* field)
+{
+    pvtSectionPlan_Free(context, &field->plan);
+    pvtSliceVolume_Free(context, &field->volume);
+    pvtBitGrid_Free(context, &field->grid);
 }
 
 static double MeasurePlane(pvtContext* context, const pvtSliceVolume* volume, const pvtPlane* plane,
@@ -44,13 +58,13 @@ static double MeasurePlane(pvtContext* context, const pvtSliceVolume* volume, co
 }
 
 // Slices every plane of a bin by the rule itself; true when some area is not 0.
-static bool FindLargest(pvtContext* context, const pvtSliceVolume* volume,
-                        const pvtSectionPlan* plan, size_t bin, pvtSliceRule rule,
+static bool FindLargest(pvtContext* context, const Field* field, size_t bin, pvtSliceRule rule,
                         pvtSection* largest)
 {
+    const pvtSectionPlan* plan = &field->plan;
     largest->area = 0.0;
     for (size_t i = plan->binStarts[bin]; i < plan->binStarts[bin + 1]; ++i) {
-        const double area = MeasurePlane(context, volume, &plan->planes[i], rule, 1);
+        const double area = MeasurePlane(context, &field->volume, &plan->planes[i], rule, 1);
         if (area > largest->area) {
             *largest = (pvtSection){plan->planes[i], area};
         }
@@ -68,19 +82,17 @@ static void each_bin_gives_its_first_largest_slice_or_none(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
-    pvtBitGrid grid = MakeLumps(context);
-    pvtSliceVolume volume;
-    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
-    pvtSectionPlan plan = MakePlan(context, &grid);
+    Field field;
+    MakeLumps(context, &field);
     for (int rule = 0; rule < 2; ++rule) {
         pvtSearchOptions options = pvtDefaultSearchOptions();
         options.rule = (pvtSliceRule)rule;
         pvtSectionSet set;
-        CHECK_OK(context, pvtSearchSections(context, &options, &volume, &plan, &set));
+        CHECK_OK(context, pvtSearchSections(context, &options, &field.volume, &field.plan, &set));
         size_t next = 0;
-        for (size_t bin = 0; bin < plan.binCount; ++bin) {
+        for (size_t bin = 0; bin < field.plan.binCount; ++bin) {
             pvtSection largest;
-            if (FindLargest(context, &volume, &plan, bin, options.rule, &largest)) {
+            if (FindLargest(context, &field, bin, options.rule, &largest)) {
                 assert_true(next < set.count);
                 assert_true(IsSamePlane(&set.sections[next].plane, &largest.plane));
                 assert_true(set.sections[next].area == largest.area);
@@ -88,12 +100,10 @@ static void each_bin_gives_its_first_largest_slice_or_none(void** state)
             }
         }
         assert_true(next == set.count && set.count > 100);
-        assert_true(rule == PVT_SLICE_CENTER || set.count < plan.binCount);
+        assert_true(rule == PVT_SLICE_CENTER || set.count < field.plan.binCount);
         pvtSectionSet_Free(context, &set);
     }
-    pvtSectionPlan_Free(context, &plan);
-    pvtSliceVolume_Free(context, &volume);
-    pvtBitGrid_Free(context, &grid);
+    FreeField(context, &field);
     DestroyTestContext(context);
 }
 
@@ -101,29 +111,25 @@ static void areas_are_those_of_the_rule_and_cells_asked_for(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeLumps(context);
-    pvtSliceVolume volume;
-    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
-    pvtSectionPlan plan = MakePlan(context, &grid);
+    Field field;
+    MakeLumps(context, &field);
     for (int n = 0; n < 4; ++n) {
         pvtSearchOptions options = pvtDefaultSearchOptions();
         options.rule = (pvtSliceRule)(n % 2);
         options.cellsPerVoxel = n < 2 ? 2 : 4;
         pvtSectionSet set;
-        CHECK_OK(context, pvtSearchSections(context, &options, &volume, &plan, &set));
+        CHECK_OK(context, pvtSearchSections(context, &options, &field.volume, &field.plan, &set));
         assert_int_equal(set.rule, options.rule);
         assert_int_equal(set.cellsPerVoxel, options.cellsPerVoxel);
         assert_true(set.count > 100);
         for (size_t i = 0; i < set.count; i += 5) {
-            const double area = MeasurePlane(context, &volume, &set.sections[i].plane, options.rule,
-                                             options.cellsPerVoxel);
+            const double area = MeasurePlane(context, &field.volume, &set.sections[i].plane,
+                                             options.rule, options.cellsPerVoxel);
             assert_true(set.sections[i].area == area);
         }
         pvtSectionSet_Free(context, &set);
     }
-    pvtSectionPlan_Free(context, &plan);
-    pvtSliceVolume_Free(context, &volume);
-    pvtBitGrid_Free(context, &grid);
+    FreeField(context, &field);
     DestroyTestContext(context);
 }
 
@@ -131,16 +137,14 @@ static void the_faces_of_a_box_are_found_in_full_at_both_ends(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid;
-    MakeShiftedGrid(context, 50, 60, 70, &grid);
+    Field field;
+    MakeShiftedGrid(context, 50, 60, 70, &field.grid);
     const int lower[3] = {5, 7, 9}, upper[3] = {41, 52, 66};
-    SetBox(&grid, lower, upper);
-    pvtSliceVolume volume;
-    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
-    pvtSectionPlan plan = MakePlan(context, &grid);
+    SetBox(&field.grid, lower, upper);
+    PlanField(context, &field);
     const pvtSearchOptions options = pvtDefaultSearchOptions();
     pvtSectionSet set;
-    CHECK_OK(context, pvtSearchSections(context, &options, &volume, &plan, &set));
+    CHECK_OK(context, pvtSearchSections(context, &options, &field.volume, &field.plan, &set));
     for (int axis = 0; axis < 3; ++axis) {
         const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
         const double face = (double)(upper[u] - lower[u]) * (upper[v] - lower[v]);
@@ -156,9 +160,7 @@ static void the_faces_of_a_box_are_found_in_full_at_both_ends(void** state)
         assert_int_equal(ends, 3);
     }
     pvtSectionSet_Free(context, &set);
-    pvtSectionPlan_Free(context, &plan);
-    pvtSliceVolume_Free(context, &volume);
-    pvtBitGrid_Free(context, &grid);
+    FreeField(context, &field);
     DestroyTestContext(context);
 }
 
@@ -167,17 +169,15 @@ static void a_slanted_face_is_found_in_full_just_below_its_steps(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid;
-    MakeShiftedGrid(context, 64, 64, 64, &grid);
+    Field field;
+    MakeShiftedGrid(context, 64, 64, 64, &field.grid);
     for (int y = 2; y < 58; ++y) {
-        SetBox(&grid, (int[]){2, y, 2}, (int[]){60 - y > 2 ? 60 - y - 1 : 2, y + 1, 62});
+        SetBox(&field.grid, (int[]){2, y, 2}, (int[]){60 - y > 2 ? 60 - y - 1 : 2, y + 1, 62});
     }
-    pvtSliceVolume volume;
-    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
-    pvtSectionPlan plan = MakePlan(context, &grid);
+    PlanField(context, &field);
     const pvtSearchOptions options = pvtDefaultSearchOptions();
     pvtSectionSet set;
-    CHECK_OK(context, pvtSearchSections(context, &options, &volume, &plan, &set));
+    CHECK_OK(context, pvtSearchSections(context, &options, &field.volume, &field.plan, &set));
     double largest = 0.0;
     for (size_t i = 0; i < set.count; ++i) {
         largest = fmax(largest, set.sections[i].area);
@@ -186,9 +186,7 @@ static void a_slanted_face_is_found_in_full_just_below_its_steps(void** state)
     assert_true(largest > 0.95 * 56.0 * sqrt(2.0) * 60.0);
     assert_true(largest <= 56.0 * sqrt(2.0) * 60.0);
     pvtSectionSet_Free(context, &set);
-    pvtSectionPlan_Free(context, &plan);
-    pvtSliceVolume_Free(context, &volume);
-    pvtBitGrid_Free(context, &grid);
+    FreeField(context, &field);
     DestroyTestContext(context);
 }
 
@@ -212,31 +210,28 @@ static void sections_are_the_same_for_any_number_of_threads_and_any_slicer(void*
 {
     (void)state;
     pvtContext* contexts[] = {CreateTestContext(1), CreateTestContext(4)};
-    pvtBitGrid grid = MakeLumps(contexts[0]);
-    pvtSliceVolume volume;
-    CHECK_OK(contexts[0], pvtCreateSliceVolume(contexts[0], &grid, &volume));
-    pvtSectionPlan plan = MakePlan(contexts[0], &grid);
-    TestSlicer user = {&volume, -1};
+    Field field;
+    MakeLumps(contexts[0], &field);
+    TestSlicer user = {&field.volume, -1};
     const pvtSlicer slicer = {SliceElsewhere, &user};
     pvtSectionSet sets[3];
     for (int n = 0; n < 3; ++n) {
         pvtSearchOptions options = pvtDefaultSearchOptions();
         options.slicer = n == 2 ? &slicer : NULL;
         pvtContext* context = contexts[n == 0 ? 0 : 1];
-        CHECK_OK(context, pvtSearchSections(context, &options, &volume, &plan, &sets[n]));
+        CHECK_OK(context,
+                 pvtSearchSections(context, &options, &field.volume, &field.plan, &sets[n]));
         assert_true(sets[n].count == sets[0].count);
         for (size_t i = 0; i < sets[n].count; ++i) {
             assert_true(IsSamePlane(&sets[n].sections[i].plane, &sets[0].sections[i].plane));
             assert_true(sets[n].sections[i].area == sets[0].sections[i].area);
         }
     }
-    assert_int_equal(user.left, -1 - (int)plan.planeCount);
+    assert_int_equal(user.left, -1 - (int)field.plan.planeCount);
     for (int n = 0; n < 3; ++n) {
         pvtSectionSet_Free(contexts[n == 0 ? 0 : 1], &sets[n]);
     }
-    pvtSectionPlan_Free(contexts[0], &plan);
-    pvtSliceVolume_Free(contexts[0], &volume);
-    pvtBitGrid_Free(contexts[0], &grid);
+    FreeField(contexts[0], &field);
     DestroyTestContext(contexts[0]);
     DestroyTestContext(contexts[1]);
 }
@@ -245,25 +240,22 @@ static void a_slicer_that_fails_ends_the_search(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeLumps(context);
-    pvtSliceVolume volume;
-    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
-    pvtSectionPlan plan = MakePlan(context, &grid);
-    TestSlicer user = {&volume, 7};
+    Field field;
+    MakeLumps(context, &field);
+    TestSlicer user = {&field.volume, 7};
     const pvtSlicer slicer = {SliceElsewhere, &user};
     pvtSearchOptions options = pvtDefaultSearchOptions();
     options.slicer = &slicer;
     pvtSectionSet set;
-    assert_int_equal(pvtSearchSections(context, &options, &volume, &plan, &set), PVT_UNSUPPORTED);
+    assert_int_equal(pvtSearchSections(context, &options, &field.volume, &field.plan, &set),
+                     PVT_UNSUPPORTED);
     assert_non_null(strstr(pvtContext_GetMessage(context), "the slicer broke"));
     assert_true(set.sections == NULL && set.count == 0 && user.left == -1);
     options = pvtDefaultSearchOptions();
     options.cellsPerVoxel = 3;
-    assert_int_equal(pvtSearchSections(context, &options, &volume, &plan, &set),
+    assert_int_equal(pvtSearchSections(context, &options, &field.volume, &field.plan, &set),
                      PVT_INVALID_ARGUMENT);
-    pvtSectionPlan_Free(context, &plan);
-    pvtSliceVolume_Free(context, &volume);
-    pvtBitGrid_Free(context, &grid);
+    FreeField(context, &field);
     DestroyTestContext(context);
 }
 
@@ -271,19 +263,15 @@ static void an_empty_plan_gives_an_empty_set(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid;
-    MakeShiftedGrid(context, 20, 20, 20, &grid);
-    pvtSliceVolume volume;
-    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
-    pvtSectionPlan plan = MakePlan(context, &grid);
+    Field field;
+    MakeShiftedGrid(context, 20, 20, 20, &field.grid);
+    PlanField(context, &field);
     const pvtSearchOptions options = pvtDefaultSearchOptions();
     pvtSectionSet set;
-    CHECK_OK(context, pvtSearchSections(context, &options, &volume, &plan, &set));
+    CHECK_OK(context, pvtSearchSections(context, &options, &field.volume, &field.plan, &set));
     assert_true(set.count == 0);
     pvtSectionSet_Free(context, &set);
-    pvtSectionPlan_Free(context, &plan);
-    pvtSliceVolume_Free(context, &volume);
-    pvtBitGrid_Free(context, &grid);
+    FreeField(context, &field);
     DestroyTestContext(context);
 }
 
@@ -307,8 +295,7 @@ static void NoteProgress(const char* stage, double fraction, void* user)
     hooks->reported = fraction;
 }
 
-static pvtStatus SearchWithHooks(Hooks* hooks, const pvtSliceVolume* volume,
-                                 const pvtSectionPlan* plan)
+static pvtStatus SearchWithHooks(Hooks* hooks, const Field* field)
 {
     pvtContextDef def = pvtDefaultContextDef();
     def.threadCount = 2;
@@ -320,7 +307,8 @@ static pvtStatus SearchWithHooks(Hooks* hooks, const pvtSliceVolume* volume,
     assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
     const pvtSearchOptions options = pvtDefaultSearchOptions();
     pvtSectionSet set;
-    const pvtStatus status = pvtSearchSections(context, &options, volume, plan, &set);
+    const pvtStatus status =
+        pvtSearchSections(context, &options, &field->volume, &field->plan, &set);
     assert_true((status == PVT_OK) == (set.sections != NULL));
     pvtSectionSet_Free(context, &set);
     DestroyTestContext(context);
@@ -331,25 +319,21 @@ static void a_search_can_be_cancelled_anywhere_and_fails_cleanly_without_memory(
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
-    pvtBitGrid grid = MakeLumps(context);
-    pvtSliceVolume volume;
-    CHECK_OK(context, pvtCreateSliceVolume(context, &grid, &volume));
-    pvtSectionPlan plan = MakePlan(context, &grid);
-    const int all = (int)(plan.planeCount + plan.binCount);
+    Field field;
+    MakeLumps(context, &field);
+    const int all = (int)(field.plan.planeCount + field.plan.binCount);
     for (int questions = 0; questions < all; questions += all / 20) {
         Hooks hooks = {.counter = {questions}, .heap.failAt = 1000};
-        assert_int_equal(SearchWithHooks(&hooks, &volume, &plan), PVT_CANCELLED);
+        assert_int_equal(SearchWithHooks(&hooks, &field), PVT_CANCELLED);
     }
     for (int blocks = 1; blocks < 5; ++blocks) {
         Hooks hooks = {.counter = {all + 1}, .heap.failAt = blocks};
-        assert_int_equal(SearchWithHooks(&hooks, &volume, &plan), PVT_OUT_OF_MEMORY);
+        assert_int_equal(SearchWithHooks(&hooks, &field), PVT_OUT_OF_MEMORY);
     }
     Hooks hooks = {.counter = {all + 1}, .heap.failAt = 5};
-    assert_int_equal(SearchWithHooks(&hooks, &volume, &plan), PVT_OK);
+    assert_int_equal(SearchWithHooks(&hooks, &field), PVT_OK);
     assert_true(hooks.reported > 0.1);
-    pvtSectionPlan_Free(context, &plan);
-    pvtSliceVolume_Free(context, &volume);
-    pvtBitGrid_Free(context, &grid);
+    FreeField(context, &field);
     DestroyTestContext(context);
 }
 
