@@ -1,38 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A context, a folder and a cube in glTF, for the tests of the glTF reader.
+// A cube in glTF, for the tests of the glTF reader.
 #ifndef PVT_TEST_GLTF_FIXTURE_H
 #define PVT_TEST_GLTF_FIXTURE_H
 
-#include "files.h"
-
-typedef struct Fixture {
-    pvtContext* context;
-    Warnings warnings;
-    TestFolder folder;
-    pvtLoadOptions options;
-    pvtModel model;
-} Fixture;
-
-static inline int SetUp(void** state)
-{
-    Fixture* fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    fixture->context = CreateWarningContext(&fixture->warnings);
-    fixture->folder = MakeTestFolder();
-    fixture->options = pvtDefaultLoadOptions();
-    *state = fixture;
-    return 0;
-}
-
-static inline int TearDown(void** state)
-{
-    Fixture* fixture = *state;
-    pvtModel_Free(fixture->context, &fixture->model);
-    (void)RemoveTestFolder(&fixture->folder);
-    DestroyTestContext(fixture->context);
-    free(fixture);
-    return 0;
-}
+#include "file_fixture.h"
 
 static inline pvtStatus LoadFile(Fixture* f, const char* name)
 {
@@ -86,7 +57,5 @@ static inline pvtStatus LoadCube(Fixture* f, const char* json)
     const Pack cube = PackCube();
     return LoadGlb(f, json, &cube);
 }
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, SetUp, TearDown)
 
 #endif

@@ -1,36 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Images come back as they went, are there whole or not at all, and their module is found where it
 // should be and nowhere else.
-#include "files.h"
+#include "file_fixture.h"
 
 #include "io/companion.h"
 
 #include <sys/stat.h>
 
-typedef struct Fixture {
-    pvtContext* context;
-    Warnings warnings;
-    TestFolder folder;
-} Fixture;
-
-static int SetUp(void** state)
+static int TearDownModules(void** state)
 {
-    Fixture* fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    fixture->context = CreateWarningContext(&fixture->warnings);
-    fixture->folder = MakeTestFolder();
-    *state = fixture;
-    return 0;
-}
-
-static int TearDown(void** state)
-{
-    Fixture* fixture = *state;
     (void)unsetenv("PARAVENT_MODULE_PATH");
-    (void)RemoveTestFolder(&fixture->folder);
-    DestroyTestContext(fixture->context);
-    free(fixture);
-    return 0;
+    return TearDown(state);
 }
 
 // Every value of red, green, blue and alpha somewhere.
@@ -182,8 +162,6 @@ static void a_module_is_taken_from_trusted_folders_only(void** state)
                      PVT_MODULE_MISSING);
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, SetUp, TearDown)
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -193,7 +171,8 @@ int main(void)
         TEST(what_is_no_image_is_refused_by_name),
         TEST(an_image_that_cannot_be_written_leaves_nothing),
         TEST(every_failing_allocation_is_reported),
-        TEST(a_module_is_taken_from_trusted_folders_only),
+        cmocka_unit_test_setup_teardown(a_module_is_taken_from_trusted_folders_only, SetUp,
+                                        TearDownModules),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

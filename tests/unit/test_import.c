@@ -1,40 +1,16 @@
 // SPDX-License-Identifier: MIT
 // OBJ, PLY, STL, DAE and FBX: what they say comes in, what they lie about is refused, and what
 // crashes their parsers stops nobody else.
-#include "files.h"
+#include "file_fixture.h"
 
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-typedef struct Fixture {
-    pvtContext* context;
-    Warnings warnings;
-    TestFolder folder;
-    pvtLoadOptions options;
-    pvtModel model;
-} Fixture;
-
-static int SetUp(void** state)
+static int TearDownChildren(void** state)
 {
-    Fixture* fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    fixture->context = CreateWarningContext(&fixture->warnings);
-    fixture->folder = MakeTestFolder();
-    fixture->options = pvtDefaultLoadOptions();
-    *state = fixture;
-    return 0;
-}
-
-static int TearDown(void** state)
-{
-    Fixture* fixture = *state;
     (void)signal(SIGCHLD, SIG_DFL);
-    pvtModel_Free(fixture->context, &fixture->model);
-    (void)RemoveTestFolder(&fixture->folder);
-    DestroyTestContext(fixture->context);
-    free(fixture);
-    return 0;
+    return TearDown(state);
 }
 
 static pvtStatus LoadBytes(Fixture* f, const char* name, const void* bytes, size_t size)
@@ -326,8 +302,6 @@ static void every_failing_allocation_is_reported(void** state)
     }
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, SetUp, TearDown)
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -338,7 +312,8 @@ int main(void)
         TEST(nodes_of_dae_and_fbx_are_placed_and_wound_outwards),
         TEST(lies_are_refused_with_their_place_and_reason),
         TEST(a_parser_that_crashes_takes_nobody_with_it),
-        TEST(a_program_that_ignores_its_children_can_import),
+        cmocka_unit_test_setup_teardown(a_program_that_ignores_its_children_can_import, SetUp,
+                                        TearDownChildren),
         TEST(no_descriptor_is_left_open),
         TEST(importing_stops_when_asked),
         TEST(every_failing_allocation_is_reported),

@@ -1,40 +1,25 @@
 // SPDX-License-Identifier: MIT
 // The importer is not believed: a program in its place that lies, dies or never ends does no harm.
-#include "files.h"
+#include "file_fixture.h"
 
 #include "io/import_result.h"
 
 #include <sys/stat.h>
 #include <time.h>
 
-typedef struct Fixture {
-    pvtContext* context;
-    Warnings warnings;
-    TestFolder folder;
-    pvtModel model;
-} Fixture;
-
-static int SetUp(void** state)
+static int SetUpModules(void** state)
 {
-    Fixture* fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    fixture->context = CreateWarningContext(&fixture->warnings);
-    fixture->folder = MakeTestFolder();
+    (void)SetUp(state);
+    const Fixture* fixture = *state;
     assert_int_equal(setenv("PARAVENT_MODULE_PATH", fixture->folder.path, 1), 0);
     WriteText(InFolder(&fixture->folder, "a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-    *state = fixture;
     return 0;
 }
 
-static int TearDown(void** state)
+static int TearDownModules(void** state)
 {
-    Fixture* fixture = *state;
     (void)unsetenv("PARAVENT_MODULE_PATH");
-    pvtModel_Free(fixture->context, &fixture->model);
-    (void)RemoveTestFolder(&fixture->folder);
-    DestroyTestContext(fixture->context);
-    free(fixture);
-    return 0;
+    return TearDown(state);
 }
 
 // Puts a script in the importer's place.
@@ -222,18 +207,18 @@ static void an_importer_that_anybody_may_change_is_passed_over(void** state)
     CheckMessage(f->context, "no triangle");
 }
 
-#define TEST(name) cmocka_unit_test_setup_teardown(name, SetUp, TearDown)
+#define MODULE_TEST(name) cmocka_unit_test_setup_teardown(name, SetUpModules, TearDownModules)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(a_sound_result_is_a_model),
-        TEST(a_result_that_lies_is_refused),
-        TEST(a_result_that_ends_early_is_refused),
-        TEST(its_text_is_cleaned),
-        TEST(an_importer_that_never_ends_is_killed_when_cancelled),
-        TEST(it_inherits_no_descriptor),
-        TEST(an_importer_that_anybody_may_change_is_passed_over),
+        MODULE_TEST(a_sound_result_is_a_model),
+        MODULE_TEST(a_result_that_lies_is_refused),
+        MODULE_TEST(a_result_that_ends_early_is_refused),
+        MODULE_TEST(its_text_is_cleaned),
+        MODULE_TEST(an_importer_that_never_ends_is_killed_when_cancelled),
+        MODULE_TEST(it_inherits_no_descriptor),
+        MODULE_TEST(an_importer_that_anybody_may_change_is_passed_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

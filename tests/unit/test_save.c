@@ -1,33 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What is saved can be read back, holds what it should, and is there whole or not at all.
-#include "files.h"
+#include "file_fixture.h"
 
 #include <sys/stat.h>
-
-typedef struct Fixture {
-    pvtContext* context;
-    Warnings warnings;
-    TestFolder folder;
-} Fixture;
-
-static int SetUp(void** state)
-{
-    Fixture* fixture = calloc(1, sizeof *fixture);
-    assert_non_null(fixture);
-    fixture->context = CreateWarningContext(&fixture->warnings);
-    fixture->folder = MakeTestFolder();
-    *state = fixture;
-    return 0;
-}
-
-static int TearDown(void** state)
-{
-    Fixture* fixture = *state;
-    (void)RemoveTestFolder(&fixture->folder);
-    DestroyTestContext(fixture->context);
-    free(fixture);
-    return 0;
-}
 
 // A cube from `lower`, of this side.
 static pvtMesh MakeCube(pvtContext* context, double lower, double side)
@@ -293,8 +268,6 @@ static void every_failing_allocation_leaves_no_file(void** state)
     assert_int_equal(RemoveTestFolder(&f->folder), 4);
     f->folder = MakeTestFolder();
 }
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, SetUp, TearDown)
 
 int main(void)
 {
