@@ -186,13 +186,6 @@ static inline double GetSignedVolume(const pvtMesh* mesh)
     return sum / 6.0;
 }
 
-static inline void CheckNear(double value, double expected, double error)
-{
-    if (!(fabs(value - expected) <= error)) {
-        fail_msg("%.17g is not %.17g within %g", value, expected, error);
-    }
-}
-
 static inline void CheckBounds(const pvtMesh* mesh, pvtVec3 lower, pvtVec3 upper, double error)
 {
     pvtVec3 least = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, most = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -201,12 +194,12 @@ static inline void CheckBounds(const pvtMesh* mesh, pvtVec3 lower, pvtVec3 upper
         least = (pvtVec3){fmin(least.x, p.x), fmin(least.y, p.y), fmin(least.z, p.z)};
         most = (pvtVec3){fmax(most.x, p.x), fmax(most.y, p.y), fmax(most.z, p.z)};
     }
-    CheckNear(least.x, lower.x, error);
-    CheckNear(least.y, lower.y, error);
-    CheckNear(least.z, lower.z, error);
-    CheckNear(most.x, upper.x, error);
-    CheckNear(most.y, upper.y, error);
-    CheckNear(most.z, upper.z, error);
+    CHECK_NEAR(least.x, lower.x, error);
+    CHECK_NEAR(least.y, lower.y, error);
+    CHECK_NEAR(least.z, lower.z, error);
+    CHECK_NEAR(most.x, upper.x, error);
+    CHECK_NEAR(most.y, upper.y, error);
+    CHECK_NEAR(most.z, upper.z, error);
 }
 
 #endif

@@ -10,7 +10,7 @@ static void a_glb_gives_the_cube_that_it_holds(void** state)
     CHECK_OK(f->context, LoadCube(f, CUBE));
     assert_int_equal(f->model.mesh.positionCount, 8);
     assert_int_equal(f->model.mesh.triangleCount, 12);
-    CheckNear(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
     assert_int_equal(f->model.partCount, 1);
     assert_string_equal(f->model.parts[0].name, "node_0");
     assert_int_equal(f->model.parts[0].triangleCount, 12);
@@ -23,7 +23,7 @@ static void contents_decide_whether_it_is_glb_or_json(void** state)
     const Pack cube = PackCube();
     WriteGlb(InFolder(&f->folder, "cube.gltf"), CUBE, &cube);
     CHECK_OK(f->context, LoadFile(f, "cube.gltf"));
-    CheckNear(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
 
     WriteBytes(InFolder(&f->folder, "a b.bin"), cube.bytes, cube.size);
     char* json =
@@ -34,7 +34,7 @@ static void contents_decide_whether_it_is_glb_or_json(void** state)
     WriteText(InFolder(&f->folder, "cube.glb"), json);
     free(json);
     CHECK_OK(f->context, LoadFile(f, "cube.glb"));
-    CheckNear(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
 }
 
 static void transforms_compose_from_the_root_down(void** state)
@@ -46,29 +46,29 @@ static void transforms_compose_from_the_root_down(void** state)
                                     "{'rotation':[0,0,0.7071067811865476,0.7071067811865476],"
                                     "'children':[2]},{'scale':[2,3,4],'mesh':0,'name':'box'}")));
     CheckBounds(&f->model.mesh, (pvtVec3){7, 0, 0}, (pvtVec3){10, 2, 4}, 1e-12);
-    CheckNear(GetSignedVolume(&f->model.mesh), 24.0, 1e-12);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 24.0, 1e-12);
     assert_string_equal(f->model.parts[0].name, "box");
     // Its y axis points along −x.
-    CheckNear(f->model.parts[0].transform[4], -3.0, 1e-12);
-    CheckNear(f->model.parts[0].transform[12], 10.0, 1e-12);
+    CHECK_NEAR(f->model.parts[0].transform[4], -3.0, 1e-12);
+    CHECK_NEAR(f->model.parts[0].transform[12], 10.0, 1e-12);
 
     // The same by a matrix, column after column.
     CHECK_OK(f->context, LoadCube(f, CUBE_NODES("{'mesh':0,'matrix':[0,2,0,0,-3,0,0,0,0,0,4,0,"
                                                 "10,0,0,1]}")));
     CheckBounds(&f->model.mesh, (pvtVec3){7, 0, 0}, (pvtVec3){10, 2, 4}, 0.0);
-    CheckNear(GetSignedVolume(&f->model.mesh), 24.0, 1e-12);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 24.0, 1e-12);
 }
 
 static void mirrored_nodes_stay_wound_outwards(void** state)
 {
     Fixture* f = *state;
     CHECK_OK(f->context, LoadCube(f, CUBE_NODES("{'mesh':0,'scale':[-1,1,1]}")));
-    CheckNear(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
     CheckBounds(&f->model.mesh, (pvtVec3){-1, 0, 0}, (pvtVec3){0, 1, 1}, 0.0);
     // Mirrored twice is not mirrored.
     CHECK_OK(f->context, LoadCube(f, CUBE_NODES("{'scale':[-1,1,1],'children':[1]},"
                                                 "{'mesh':0,'scale':[1,-2,1]}")));
-    CheckNear(GetSignedVolume(&f->model.mesh), 2.0, 0.0);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 2.0, 0.0);
 }
 
 static void instances_of_a_mesh_share_its_number(void** state)
@@ -79,12 +79,12 @@ static void instances_of_a_mesh_share_its_number(void** state)
                          "{'mesh':0,'translation':[5,0,0]},{'mesh':0,'translation':[0,5,0]}]}"));
     assert_int_equal(f->model.partCount, 3);
     assert_int_equal(f->model.mesh.triangleCount, 36);
-    CheckNear(GetSignedVolume(&f->model.mesh), 3.0, 1e-12);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 3.0, 1e-12);
     for (size_t i = 0; i < 3; ++i) {
         assert_int_equal(f->model.parts[i].meshIndex, 0);
         assert_int_equal(f->model.parts[i].firstTriangle, 12 * i);
     }
-    CheckNear(f->model.parts[1].transform[12], 5.0, 0.0);
+    CHECK_NEAR(f->model.parts[1].transform[12], 5.0, 0.0);
 }
 
 static void a_chain_of_3000_nodes_is_walked(void** state)
@@ -197,7 +197,7 @@ static void every_index_width_and_mode_gives_the_quad(void** state)
                                       cases[i].size, cases[i].count));
         assert_int_equal(f->model.mesh.triangleCount, 2);
         assert_int_equal(f->model.mesh.positionCount, 4);
-        CheckNear(GetFacing(&f->model.mesh), 8.0, 0.0);
+        CHECK_NEAR(GetFacing(&f->model.mesh), 8.0, 0.0);
         assert_string_equal(f->model.parts[0].name, "quad");
     }
 }
@@ -208,7 +208,7 @@ static void stitches_of_a_strip_are_not_triangles(void** state)
     const uint8_t strip[] = {0, 1, 3, 2, 2, 0, 0, 1, 3, 2};
     CHECK_OK(f->context, LoadQuad(f, 5, 5121, strip, sizeof strip, sizeof strip));
     assert_int_equal(f->model.mesh.triangleCount, 4);
-    CheckNear(GetFacing(&f->model.mesh), 16.0, 0.0);
+    CHECK_NEAR(GetFacing(&f->model.mesh), 16.0, 0.0);
 }
 
 static void points_lines_and_spare_indices_are_passed_over(void** state)
@@ -264,7 +264,7 @@ static void interleaved_positions_are_strided(void** state)
                      "'count':8,'type':'VEC3'},{'bufferView':1,'componentType':5123,'count':36,"
                      "'type':'SCALAR'}]," CUBE_MESH ",'nodes':[{'mesh':0}]}",
                      &pack));
-    CheckNear(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
 }
 
 static void sparse_values_replace_those_below(void** state)
@@ -463,7 +463,7 @@ static void copies_by_extension_are_instances(void** state)
     assert_int_equal(f->model.partCount, 3);
     assert_int_equal(f->model.parts[2].meshIndex, 0);
     CheckBounds(&f->model.mesh, (pvtVec3){-2, -1, 7}, (pvtVec3){10, 21, 8}, 1e-12);
-    CheckNear(GetSignedVolume(&f->model.mesh), 4.0, 1e-9);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 4.0, 1e-9);
     (void)snprintf(json, sizeof json, format, 2);
     CheckRefused(f, LoadGlb(f, json, &pack), PVT_INVALID_INPUT, "3 and 2 elements");
 }
@@ -498,7 +498,7 @@ static void compressed_views_hold_what_was_packed(void** state)
     CHECK_OK(f->context, LoadGlb(f, json, &pack));
     assert_int_equal(f->model.mesh.triangleCount, 12);
     CheckBounds(&f->model.mesh, (pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, 0.0);
-    CheckNear(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
     // Damaged anywhere: refused, or another cube, but never anything worse.
     const Pack whole = pack;
     for (size_t i = 0; i < whole.size; ++i) {

@@ -55,7 +55,7 @@ static void obj_polygons_and_objects_come_in(void** state)
     assert_int_equal(f->model.parts[1].triangleCount, 4);
     assert_int_equal(f->model.mesh.positionCount, 8);
     CheckBounds(&f->model.mesh, (pvtVec3){0, 0, 0}, (pvtVec3){6, 2, 1}, 0.0);
-    CheckNear(GetSignedVolume(&f->model.mesh), 1.0 / 6.0, 1e-6);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0 / 6.0, 1e-6);
 
     f->options.node = "tetrahedron";
     CHECK_OK(f->context, LoadText(f, "a.obj",
@@ -170,9 +170,9 @@ static void nodes_of_dae_and_fbx_are_placed_and_wound_outwards(void** state)
         assert_string_equal(f->model.parts[0].name, "a");
         assert_string_equal(f->model.parts[1].name, "b");
         assert_int_equal(f->model.parts[0].meshIndex, f->model.parts[1].meshIndex);
-        CheckNear(f->model.parts[0].transform[12], 5.0, 1e-6);
+        CHECK_NEAR(f->model.parts[0].transform[12], 5.0, 1e-6);
         CheckBounds(&f->model.mesh, (pvtVec3){-2, 0, 0}, (pvtVec3){6, 1, 1}, 1e-6);
-        CheckNear(GetSignedVolume(&f->model.mesh), 0.5, 1e-6);
+        CHECK_NEAR(GetSignedVolume(&f->model.mesh), 0.5, 1e-6);
     }
     f->options.scene = 1;
     CheckRefused(f, LoadText(f, "a.dae", kCollada), PVT_INVALID_ARGUMENT, "no scene 1");

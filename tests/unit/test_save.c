@@ -65,7 +65,7 @@ static void a_mesh_comes_back_from_glb_and_gltf_as_it_went(void** state)
         assert_int_equal(model.mesh.positionCount, 8);
         assert_int_equal(model.partCount, 1);
         assert_string_equal(model.parts[0].name, "house_occluder");
-        CheckNear(GetSignedVolume(&model.mesh), 8.0, 1e-5);
+        CHECK_NEAR(GetSignedVolume(&model.mesh), 8.0, 1e-5);
         const double low = (double)(float)lower, high = (double)(float)(lower + 2.0);
         CheckBounds(&model.mesh, (pvtVec3){low, low, low}, (pvtVec3){high, high, high}, 0.0);
         pvtModel_Free(f->context, &model);
@@ -98,7 +98,7 @@ static void several_items_are_nodes_at_the_root_with_their_extras(void** state)
     assert_int_equal(model.partCount, 2);
     assert_string_equal(model.parts[0].name, "near");
     assert_string_equal(model.parts[1].name, "far");
-    CheckNear(GetSignedVolume(&model.mesh), 9.0, 1e-5);
+    CHECK_NEAR(GetSignedVolume(&model.mesh), 9.0, 1e-5);
     pvtModel_Free(f->context, &model);
     for (int i = 0; i < 2; ++i) {
         pvtMesh_Free(f->context, &cubes[i]);
