@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Runs with their k-th allocation failing: the status says so, nothing is held, and the output is
-// empty. Every k for the stages one after the other on a small plan; a few hundred k for the
-// driver, which asks for memory tens of thousands of times.
+// empty. Every k for the stages one after the other on a small plan; a sample of them for the
+// driver, which asks tens of thousands of times.
 #include "check.h"
 
 #include "recipe_mesh.h"

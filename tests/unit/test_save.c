@@ -2,6 +2,8 @@
 // What is saved can be read back, holds what it should, and is there whole or not at all.
 #include "file_fixture.h"
 
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 // A cube from `lower`, of this side.
@@ -217,12 +219,26 @@ static void what_cannot_be_saved_is_refused_before_a_file_is_made(void** state)
     assert_int_equal(pvtSaveModel(f->context, path, &item, 1), PVT_INVALID_ARGUMENT);
     CheckMessage(f->context, "position 3");
     pvtMesh_Free(f->context, &cube);
-    const TestFolder fresh = MakeTestFolder();
-    assert_int_equal(RemoveTestFolder(&fresh), 0);
+    assert_int_equal(RemoveTestFolder(&f->folder), 0);
+    f->folder = MakeTestFolder();
     assert_false(pvtCanSaveModel("glb"));
     assert_false(pvtCanSaveModel("a.fbx"));
     assert_true(pvtCanSaveModel("a.gltf"));
     assert_true(pvtCanSaveModel("some/where.b/a.PLY"));
+}
+
+// A limit on the size of files stands in for the disk's.
+static pvtStatus SaveOnFullDisk(pvtContext* context, const char* path, const pvtSaveItem* item)
+{
+    struct rlimit before;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const struct rlimit tight = {100, before.rlim_max};
+    (void)signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &tight), 0);
+    const pvtStatus status = pvtSaveModel(context, path, item, 1);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    (void)signal(SIGXFSZ, SIG_DFL);
+    return status;
 }
 
 static void a_failed_save_leaves_what_was_there(void** state)
@@ -236,10 +252,24 @@ static void a_failed_save_leaves_what_was_there(void** state)
     for (int i = 0; i < 4; ++i) {
         char name[32];
         (void)snprintf(name, sizeof name, "full.%s", endings[i]);
-        assert_int_equal(symlink("/dev/full", InFolder(&f->folder, name)), 0);
-        assert_int_equal(pvtSaveModel(f->context, InFolder(&f->folder, name), &item, 1),
-                         PVT_OUTPUT_FAILED);
+        const char* path = InFolder(&f->folder, name);
+        assert_int_equal(symlink("/dev/full", path), 0);
+        assert_int_equal(pvtSaveModel(f->context, path, &item, 1), PVT_OUTPUT_FAILED);
+        struct stat info;
+        assert_int_equal(lstat(path, &info), 0);
+        assert_true(S_ISLNK(info.st_mode));
+
+        (void)snprintf(name, sizeof name, "old.%s", endings[i]);
+        path = InFolder(&f->folder, name);
+        WriteText(path, "as it was");
+        assert_int_equal(SaveOnFullDisk(f->context, path, &item), PVT_OUTPUT_FAILED);
+        size_t size = 0;
+        char* text = ReadText(path, &size);
+        assert_string_equal(text, "as it was");
+        free(text);
     }
+    assert_int_equal(RemoveTestFolder(&f->folder), 8); // nothing half written beside them
+    f->folder = MakeTestFolder();
     pvtMesh_Free(f->context, &cube);
 }
 
