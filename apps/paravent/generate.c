@@ -12,10 +12,11 @@
 static pvtStatus CheckEndings(pvtRun* run, const pvtGenerateOptions* options)
 {
     if (strcmp(options->output, "-") != 0 && !pvtCanSaveModel(options->output)) {
-        return pvtRun_Fail(run, PVT_UNSUPPORTED,
-                           "--output %s: models are written as .glb, .gltf, .obj or .ply; give the "
-                           "name one of these endings",
-                           options->output);
+        return pvtRun_Fail(
+            run, PVT_UNSUPPORTED,
+            "--output %s: models are written as .glb, .gltf, .obj, .ply or .tscn; give "
+            "the name one of these endings",
+            options->output);
     }
     if (options->preview != NULL && !pvtPathEndsIn(options->preview, ".png")) {
         return pvtRun_Fail(run, PVT_UNSUPPORTED,

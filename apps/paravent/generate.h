@@ -3,6 +3,7 @@
 #ifndef PVT_APP_GENERATE_H
 #define PVT_APP_GENERATE_H
 
+#include "convention.h"
 #include "json.h"
 #include "run.h"
 #include "view_list.h"
@@ -11,7 +12,6 @@
 #include <paravent/io.h>
 
 enum { PVT_SLICER_AUTO, PVT_SLICER_SAMPLE, PVT_SLICER_EGL, PVT_SLICER_OSMESA };
-enum { PVT_CONVENTION_PLAIN, PVT_CONVENTION_GODOT };
 
 /// The line, as it was read. Choices are places among their words.
 typedef struct pvtGenerateOptions {

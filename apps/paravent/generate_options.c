@@ -21,7 +21,9 @@ static const pvtOption outputTable[] = {
      FIELD(PVT_OPTION_TEXT, output),
      .placeholder = "FILE",
      .defaultText = "",
-     .help = "where the occluder goes: .glb, .gltf, .obj or .ply by the name's ending"},
+     .help =
+         "where the occluder goes: .glb, .gltf, .obj, .ply, or .tscn (a scene of Godot 4) by the "
+         "name's ending"},
     {.name = "stats",
      FIELD(PVT_OPTION_TEXT, stats),
      .placeholder = "FILE",

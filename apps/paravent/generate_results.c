@@ -17,8 +17,7 @@ pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
     char stem[NAME_SIZE];
     char name[NAME_SIZE + 16];
     pvtGetStem(generated->input, stem, sizeof stem);
-    (void)snprintf(name, sizeof name, "%s%s", stem,
-                   options->convention == PVT_CONVENTION_GODOT ? "-occonly" : "_occluder");
+    pvtMakeNodeName(stem, options->convention, name, sizeof name);
     static const char* const efforts[] = {"fast", "default", "best"};
     const pvtBuildStats* stats = &generated->stats;
     const pvtExtra extras[] = {

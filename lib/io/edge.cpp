@@ -44,4 +44,21 @@ void Warn(const pvtLoadJob& job, const char* format, ...)
     pvtLog(job.context, PVT_LOG_WARNING, "%s: %s", job.path, text);
 }
 
+std::string CopyClean(pvtContext* context, const char* text)
+{
+    char* clean = pvtCopyCleanText(context, text);
+    if (clean == nullptr) {
+        throw Failure{pvtContext_GetStatus(context)};
+    }
+    std::string copy;
+    try {
+        copy = clean;
+    } catch (...) {
+        pvtRelease(context, clean);
+        throw;
+    }
+    pvtRelease(context, clean);
+    return copy;
+}
+
 } // namespace pvt

@@ -56,6 +56,9 @@ inline std::string Clean(const std::string& text)
     return pvtCleanName(text.c_str(), buffer);
 }
 
+/// The whole of a text as valid UTF-8 without control characters, to be written.
+std::string CopyClean(pvtContext* context, const char* text);
+
 /// Runs `body` and turns whatever it throws into a status. `what` is the file, for the text.
 template <class Body> pvtStatus Guard(pvtContext* context, const char* what, Body&& body) noexcept
 {

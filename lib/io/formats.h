@@ -37,6 +37,7 @@ typedef struct pvtSaveJob {
 pvtStatus pvtWriteGltf(const pvtSaveJob* job, bool binary, pvtOutput* output);
 pvtStatus pvtWriteObj(const pvtSaveJob* job, pvtOutput* output);
 pvtStatus pvtWritePly(const pvtSaveJob* job, pvtOutput* output);
+pvtStatus pvtWriteTscn(const pvtSaveJob* job, pvtOutput* output);
 
 #ifdef __cplusplus
 }

@@ -100,19 +100,7 @@ class Saver
     // Valid UTF-8: the JSON writer throws at anything else.
     std::string CleanText(const char* text) const
     {
-        char* clean = pvtCopyCleanText(job_.context, text);
-        if (clean == nullptr) {
-            throw pvt::Failure{pvtContext_GetStatus(job_.context)};
-        }
-        std::string copy;
-        try {
-            copy = clean;
-        } catch (...) {
-            pvtRelease(job_.context, clean);
-            throw;
-        }
-        pvtRelease(job_.context, clean);
-        return copy;
+        return pvt::CopyClean(job_.context, text);
     }
 
     std::string GetName(std::size_t index) const

@@ -8,15 +8,25 @@
 #include <float.h>
 #include <math.h>
 
-typedef enum Format { FORMAT_NONE, FORMAT_GLB, FORMAT_GLTF, FORMAT_OBJ, FORMAT_PLY } Format;
+typedef enum Format {
+    FORMAT_NONE,
+    FORMAT_GLB,
+    FORMAT_GLTF,
+    FORMAT_OBJ,
+    FORMAT_PLY,
+    FORMAT_TSCN
+} Format;
 
 static Format GetFormat(const char* path)
 {
     static const struct {
         const char* ending;
         Format format;
-    } formats[] = {
-        {".glb", FORMAT_GLB}, {".gltf", FORMAT_GLTF}, {".obj", FORMAT_OBJ}, {".ply", FORMAT_PLY}};
+    } formats[] = {{".glb", FORMAT_GLB},
+                   {".gltf", FORMAT_GLTF},
+                   {".obj", FORMAT_OBJ},
+                   {".ply", FORMAT_PLY},
+                   {".tscn", FORMAT_TSCN}};
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; ++i) {
         if (pvtHasEnding(path, formats[i].ending)) {
             return formats[i].format;
@@ -81,6 +91,8 @@ static pvtStatus Write(const pvtSaveJob* job, Format format, pvtOutput* output)
         return pvtWriteGltf(job, format == FORMAT_GLB, output);
     case FORMAT_OBJ:
         return pvtWriteObj(job, output);
+    case FORMAT_TSCN:
+        return pvtWriteTscn(job, output);
     case FORMAT_PLY:
     case FORMAT_NONE:
         break;
@@ -94,7 +106,8 @@ pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem*
     const Format format = GetFormat(path);
     if (format == FORMAT_NONE) {
         return pvtFail(context, PVT_UNSUPPORTED,
-                       "%s: only names that end in .glb, .gltf, .obj or .ply can be written", path);
+                       "%s: only names that end in .glb, .gltf, .obj, .ply or .tscn can be written",
+                       path);
     }
     const pvtSaveJob job = {context, items, count};
     pvtStatus status = CheckItems(&job);

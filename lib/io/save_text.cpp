@@ -1,90 +1,15 @@
 // SPDX-License-Identifier: MIT
 // OBJ as text and PLY as little-endian binary, the two that every tool reads. Both hold floats, as
-// glTF does, so that a mesh is the same in each; no locale has a say in how numbers look.
-#include "edge.hpp"
-
-#include <charconv>
-#include <cstring>
+// glTF does, so that a mesh is the same in each.
+#include "writer.hpp"
 
 namespace
 {
 
-// Bytes gathered before they are handed on.
-constexpr std::size_t kPiece = 1 << 16;
-
-class Writer
-{
-  public:
-    explicit Writer(pvtContext* context, pvtOutput* output) : context_(context), output_(output)
-    {
-        text_.reserve(kPiece + 256);
-    }
-
-    Writer& operator<<(const char* text)
-    {
-        text_ += text;
-        return *this;
-    }
-    Writer& operator<<(const std::string& text)
-    {
-        text_ += text;
-        return *this;
-    }
-    // Numbers in the fewest digits that read back as the same number.
-    template <class T> Writer& Number(T value)
-    {
-        char digits[48];
-        const auto end = std::to_chars(digits, digits + sizeof digits, value);
-        text_.append(digits, end.ptr);
-        return *this;
-    }
-    void PutU32(std::uint32_t value)
-    {
-        for (int shift = 0; shift < 32; shift += 8) {
-            text_.push_back(static_cast<char>(value >> shift & 0xff));
-        }
-    }
-    void PutFloat(double value)
-    {
-        const float narrow = static_cast<float>(value);
-        std::uint32_t bits;
-        std::memcpy(&bits, &narrow, sizeof bits);
-        PutU32(bits);
-    }
-    void PutByte(std::uint8_t value)
-    {
-        text_.push_back(static_cast<char>(value));
-    }
-
-    void FlushIfFull()
-    {
-        if (text_.size() >= kPiece) {
-            Flush();
-        }
-    }
-    void Flush()
-    {
-        pvt::Poll(context_);
-        pvtOutput_Write(output_, text_.data(), text_.size());
-        text_.clear();
-    }
-
-  private:
-    pvtContext* context_;
-    pvtOutput* output_;
-    std::string text_;
-};
-
-std::string GetName(const pvtSaveJob& job, std::size_t index)
-{
-    const char* name = job.items[index].name;
-    return name != nullptr && name[0] != '\0' ? name : "node_" + std::to_string(index);
-}
-
 // An object's name ends at the end of its line, and some readers stop at a space.
 std::string GetObjName(const pvtSaveJob& job, std::size_t index)
 {
-    std::string name = GetName(job, index);
+    std::string name = pvt::GetItemName(job, index);
     for (char& c : name) {
         const unsigned char byte = static_cast<unsigned char>(c);
         c = byte <= ' ' || byte == 0x7f ? '_' : c;
@@ -94,7 +19,7 @@ std::string GetObjName(const pvtSaveJob& job, std::size_t index)
 
 void WriteObj(const pvtSaveJob& job, pvtOutput* output)
 {
-    Writer writer(job.context, output);
+    pvt::Writer writer(job.context, output);
     writer << "# paravent " << pvtGetVersion() << "\n";
     std::size_t base = 1; // OBJ counts from 1, through all objects
     for (std::size_t i = 0; i < job.count; ++i) {
@@ -121,7 +46,7 @@ void WriteObj(const pvtSaveJob& job, pvtOutput* output)
     writer.Flush();
 }
 
-void WritePlyHeader(const pvtSaveJob& job, Writer& writer)
+void WritePlyHeader(const pvtSaveJob& job, pvt::Writer& writer)
 {
     std::size_t positionCount = 0, triangleCount = 0;
     for (std::size_t i = 0; i < job.count; ++i) {
@@ -141,7 +66,7 @@ void WritePlyHeader(const pvtSaveJob& job, Writer& writer)
 
 void WritePly(const pvtSaveJob& job, pvtOutput* output)
 {
-    Writer writer(job.context, output);
+    pvt::Writer writer(job.context, output);
     WritePlyHeader(job, writer);
     for (std::size_t i = 0; i < job.count; ++i) {
         const pvtMesh& mesh = *job.items[i].mesh;

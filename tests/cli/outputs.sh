@@ -4,7 +4,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 cp "$models/boulder.glb" in.glb
 
-expect 3 "models are written as .glb, .gltf, .obj or .ply" generate in.glb "${quick[@]}" -o out.stl
+expect 3 "models are written as .glb, .gltf, .obj, .ply or .tscn" generate in.glb "${quick[@]}" -o out.stl
 expect 3 "models are written as" generate in.glb "${quick[@]}" -o out
 expect 3 "pictures are written as .png" generate in.glb "${quick[@]}" -o out.glb --preview out.jpg
 expect 4 "folder nowhere: No such file or directory; make it first" generate in.glb "${quick[@]}" -o nowhere/out.glb
@@ -93,9 +93,9 @@ cp in.glb "$odd"
 expect 0 "" generate "$odd" "${quick[@]}" -o out.gltf
 holds "bytes that are not UTF-8 become _" grep -q '__odd\\"name.v2_occluder"' out.gltf
 rm "$odd"
-for format in glb gltf obj ply GLB; do
+for format in glb gltf obj ply tscn GLB; do
     expect 0 "" generate in.glb "${quick[@]}" -o "all.$format"
     holds "all.$format has bytes" test -s "all.$format"
 done
-only in.glb out.glb out.gltf all.glb all.gltf all.obj all.ply all.GLB
+only in.glb out.glb out.gltf all.glb all.gltf all.obj all.ply all.tscn all.GLB
 finish

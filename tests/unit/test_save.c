@@ -197,6 +197,81 @@ static void obj_and_ply_are_written_to_the_letter(void** state)
     pvtMesh_Free(f->context, &mesh);
 }
 
+// What the parser of the command's test cannot be given by a file's name.
+static void a_scene_of_godot_is_written_to_the_letter(void** state)
+{
+    Fixture* f = *state;
+    const pvtVec3 positions[3] = {{0, -0.0, 0}, {0.1, 16777216, -2.5}, {3.4e38, 1e-40, 3e10}};
+    const uint32_t indices[3] = {2, 0, 1};
+    pvtMesh mesh;
+    CHECK_OK(f->context, pvtCreateMesh(f->context, positions, 3, indices, 1, &mesh));
+    const pvtExtra extras[] = {
+        {.key = "error_bound", .number = 0.125},
+        {.key = "none", .number = NAN},
+        {.key = "a \"key\"", .text = "back\\slash\nand \"quotes\""},
+    };
+    const pvtSaveItem items[2] = {{"wall", &mesh, extras, 3}, {"gate", &mesh, extras + 1, 1}};
+    const char* path = InFolder(&f->folder, "a.tscn");
+    CHECK_OK(f->context, pvtSaveModel(f->context, path, items, 2));
+    CheckHolds(path, "[gd_scene load_steps=3 format=3]\n\n"
+                     "[sub_resource type=\"ArrayOccluder3D\" id=\"ArrayOccluder3D_1\"]\n"
+                     "vertices = PackedVector3Array(0, -0.0, 0, 0.1, 16777216, -2.5, "
+                     "3.4e+38, 1e-40, 3e+10)\n"
+                     "indices = PackedInt32Array(2, 0, 1)\n");
+    CheckHolds(path,
+               "\n[node name=\"Occluders\" type=\"Node3D\"]\nmetadata/generator = \"paravent ");
+    CheckHolds(path, "\n[node name=\"wall\" type=\"OccluderInstance3D\" parent=\".\"]\n"
+                     "occluder = SubResource(\"ArrayOccluder3D_1\")\n"
+                     "metadata/paravent = {\n\"error_bound\": 0.125,\n"
+                     "\"a \\\"key\\\"\": \"back\\\\slash?and \\\"quotes\\\"\"\n}\n");
+    CheckHolds(path, "\n[node name=\"gate\" type=\"OccluderInstance3D\" parent=\".\"]\n"
+                     "occluder = SubResource(\"ArrayOccluder3D_2\")\n");
+    pvtMesh_Free(f->context, &mesh);
+}
+
+static void names_in_a_scene_of_godot_are_valid_and_its_own(void** state)
+{
+    Fixture* f = *state;
+    pvtMesh cube = MakeCube(f->context, 0.0, 1.0);
+    const struct {
+        const char *name, *written;
+    } cases[] = {
+        {"a/b:c@d.e%f\"g", "a_b_c_d_e_f_g"},
+        {"back\\slash", "back\\\\slash"},
+        {"new\nline\t\x7f", "new?line??"},
+        {"bad\xff"
+         "utf8",
+         "bad?utf8"},
+        {"\xc3\xa4 b[c]; = {}", "\xc3\xa4 b[c]; = {}"},
+        {"", "node_5"},
+        {NULL, "node_6"},
+        {"twin", "twin"},
+        {"twin", "twin2"},
+        {"twin2", "twin22"},
+        {"twin", "twin3"},
+        {"Twin", "Twin"},
+        {"a.b", "a_b"},
+        {"a/b", "a_b2"},
+        {"..", "__"},
+    };
+    enum { COUNT = sizeof cases / sizeof *cases };
+    pvtSaveItem items[COUNT];
+    for (int i = 0; i < COUNT; ++i) {
+        items[i] = (pvtSaveItem){.name = cases[i].name, .mesh = &cube};
+    }
+    const char* path = InFolder(&f->folder, "a.tscn");
+    CHECK_OK(f->context, pvtSaveModel(f->context, path, items, COUNT));
+    for (int i = 0; i < COUNT; ++i) {
+        char line[128];
+        (void)snprintf(line, sizeof line,
+                       "[node name=\"%s\" type=\"OccluderInstance3D\" parent=\".\"]\n"
+                       "occluder = SubResource(\"ArrayOccluder3D_%d\")\n",
+                       cases[i].written, i + 1);
+        CheckHolds(path, line);
+    }
+    pvtMesh_Free(f->context, &cube);
+}
+
 static void what_cannot_be_saved_is_refused_before_a_file_is_made(void** state)
 {
     Fixture* f = *state;
@@ -210,7 +285,7 @@ static void what_cannot_be_saved_is_refused_before_a_file_is_made(void** state)
     assert_int_equal(pvtSaveModel(f->context, path, &item, 0), PVT_INVALID_ARGUMENT);
     assert_int_equal(pvtSaveModel(f->context, InFolder(&f->folder, "x.stl"), &item, 1),
                      PVT_UNSUPPORTED);
-    CheckMessage(f->context, ".glb, .gltf, .obj or .ply");
+    CheckMessage(f->context, ".glb, .gltf, .obj, .ply or .tscn");
     cube.indices[35] = 8;
     assert_int_equal(pvtSaveModel(f->context, path, &item, 1), PVT_INVALID_ARGUMENT);
     CheckMessage(f->context, "index 35 is 8");
@@ -248,8 +323,8 @@ static void a_failed_save_leaves_what_was_there(void** state)
     const pvtSaveItem item = {.name = "box", .mesh = &cube};
     assert_int_equal(pvtSaveModel(f->context, "/nonexistent/x.glb", &item, 1), PVT_OUTPUT_FAILED);
     CheckMessage(f->context, "/nonexistent/x.glb");
-    const char* const endings[] = {"glb", "gltf", "obj", "ply"};
-    for (int i = 0; i < 4; ++i) {
+    const char* const endings[] = {"glb", "gltf", "obj", "ply", "tscn"};
+    for (int i = 0; i < 5; ++i) {
         char name[32];
         (void)snprintf(name, sizeof name, "full.%s", endings[i]);
         const char* path = InFolder(&f->folder, name);
@@ -279,8 +354,8 @@ static void every_failing_allocation_leaves_no_file(void** state)
     pvtMesh cube = MakeCube(f->context, 0.0, 1.0);
     const pvtExtra extra = {.key = "key", .text = "text"};
     const pvtSaveItem item = {"box", &cube, &extra, 1};
-    const char* const names[] = {"a.glb", "a.gltf", "a.obj", "a.ply"};
-    for (int i = 0; i < 4; ++i) {
+    const char* const names[] = {"a.glb", "a.gltf", "a.obj", "a.ply", "a.tscn"};
+    for (int i = 0; i < 5; ++i) {
         pvtStatus status = PVT_OUT_OF_MEMORY;
         for (int failAt = 1; status != PVT_OK; ++failAt) {
             PoorHeap heap = {.failAt = failAt};
@@ -295,7 +370,7 @@ static void every_failing_allocation_leaves_no_file(void** state)
         }
     }
     pvtMesh_Free(f->context, &cube);
-    assert_int_equal(RemoveTestFolder(&f->folder), 4);
+    assert_int_equal(RemoveTestFolder(&f->folder), 5);
     f->folder = MakeTestFolder();
 }
 
@@ -307,6 +382,8 @@ int main(void)
         TEST(the_restart_index_is_never_written),
         TEST(names_that_are_no_utf8_do_not_stop_a_save),
         TEST(obj_and_ply_are_written_to_the_letter),
+        TEST(a_scene_of_godot_is_written_to_the_letter),
+        TEST(names_in_a_scene_of_godot_are_valid_and_its_own),
         TEST(what_cannot_be_saved_is_refused_before_a_file_is_made),
         TEST(a_failed_save_leaves_what_was_there),
         TEST(every_failing_allocation_leaves_no_file),

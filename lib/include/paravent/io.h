@@ -54,7 +54,8 @@ PVT_API pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* option
                                pvtModel* model);
 PVT_API void pvtModel_Free(pvtContext* context, pvtModel* model);
 
-/// A number or a text to store with a node, under extras.paravent of glTF.
+/// A number or a text to store with a node: under extras.paravent of glTF, and as the entry
+/// "paravent" of the metadata of Godot's nodes.
 typedef struct pvtExtra {
     const char* key;
     double number;
@@ -69,8 +70,9 @@ typedef struct pvtSaveItem {
     size_t extraCount;
 } pvtSaveItem;
 
-/// Writes .glb, .gltf (with its buffer inside), .obj or .ply by the path's ending; whole or not at
-/// all. PVT_UNSUPPORTED for another ending, PVT_OUTPUT_FAILED with the reason.
+/// Writes .glb, .gltf (with its buffer inside), .obj, .ply or .tscn by the path's ending; whole or
+/// not at all. A .tscn is a scene of Godot 4 with an OccluderInstance3D an item. PVT_UNSUPPORTED
+/// for another ending, PVT_OUTPUT_FAILED with the reason.
 PVT_API pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem* items,
                                size_t count);
 /// Whether pvtSaveModel knows the path's ending: to be asked before the long work.
