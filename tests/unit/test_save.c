@@ -343,7 +343,7 @@ static void a_failed_save_leaves_what_was_there(void** state)
         assert_string_equal(text, "as it was");
         free(text);
     }
-    assert_int_equal(RemoveTestFolder(&f->folder), 8); // nothing half written beside them
+    assert_int_equal(RemoveTestFolder(&f->folder), 10); // nothing half written beside them
     f->folder = MakeTestFolder();
     pvtMesh_Free(f->context, &cube);
 }
