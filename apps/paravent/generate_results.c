@@ -34,7 +34,7 @@ pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
         {"seed", (double)options->seed, NULL},
     };
     const pvtSaveItem item = {name, &generated->occluder.mesh, extras,
-                              sizeof extras / sizeof *extras};
+                              sizeof extras / sizeof *extras, NULL};
     return pvtSaveModel(run->context, options->output, &item, 1);
 }
 

@@ -2,7 +2,7 @@
 #include "builder.h"
 
 #include "base/context.h"
-#include "base/vector.h"
+#include "mesh/transform.h"
 #include "text.h"
 
 #include <float.h>
@@ -23,22 +23,6 @@ void pvtMultiplyTransforms(const double a[16], const double b[16], double produc
             product[4 * column + row] = sum;
         }
     }
-}
-
-static pvtVec3 TransformPoint(const double m[16], pvtVec3 p)
-{
-    return (pvtVec3){m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
-                     m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
-                     m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
-}
-
-// Whether the transform turns the mesh inside out.
-static bool IsMirrored(const double m[16])
-{
-    const pvtVec3 x = {m[0], m[1], m[2]};
-    const pvtVec3 y = {m[4], m[5], m[6]};
-    const pvtVec3 z = {m[8], m[9], m[10]};
-    return pvtDot(pvtCross(x, y), z) < 0.0;
 }
 
 // False for NaN too.
@@ -85,7 +69,7 @@ static bool PlacePositions(pvtModelBuilder* builder, const double transform[16],
     pvtVec3* placed = builder->model.mesh.positions + builder->model.mesh.positionCount;
     bool usable = true;
     for (size_t i = 0; i < mesh->positionCount; ++i) {
-        placed[i] = TransformPoint(transform, mesh->positions[i]);
+        placed[i] = pvtTransformPoint(transform, mesh->positions[i]);
         usable = usable && IsUsable(placed[i]);
     }
     return usable;
@@ -138,7 +122,7 @@ static pvtStatus PlaceMesh(pvtModelBuilder* builder, const double transform[16],
 {
     pvtContext* context = builder->context;
     pvtMesh* all = &builder->model.mesh;
-    const bool mirrored = IsMirrored(transform);
+    const bool mirrored = pvtGetDeterminant(transform) < 0.0;
     size_t positionCount = mesh->positionCount;
     if (PlacePositions(builder, transform, mesh)) {
         *triangleCount = CopyTriangles(builder, mesh, mirrored, NULL);
@@ -157,6 +141,48 @@ static pvtStatus PlaceMesh(pvtModelBuilder* builder, const double transform[16],
     return PVT_OK;
 }
 
+// Makes room for the mesh with this number. They are small and count from 0, but may come in any
+// order.
+static pvtStatus ReserveLocal(pvtModelBuilder* builder, size_t meshIndex)
+{
+    pvtModel* model = &builder->model;
+    if (meshIndex >= builder->localRoom) {
+        const size_t room = meshIndex + meshIndex / 2 + 8;
+        pvtMesh* grown =
+            pvtReallocate(builder->context, model->meshes, room, sizeof *model->meshes);
+        if (grown == NULL) {
+            return pvtContext_GetStatus(builder->context);
+        }
+        model->meshes = grown;
+        builder->localRoom = room;
+    }
+    model->meshCount = meshIndex < model->meshCount ? model->meshCount : meshIndex + 1;
+    return PVT_OK;
+}
+
+// Keeps the mesh as its file has it, but for what is not finite: a model of one part that stands
+// where it is.
+static pvtStatus KeepLocal(pvtModelBuilder* builder, size_t meshIndex, const pvtLocalMesh* mesh)
+{
+    static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    pvtStatus status = ReserveLocal(builder, meshIndex);
+    if (status != PVT_OK || builder->model.meshes[meshIndex].triangleCount > 0) {
+        return status;
+    }
+    pvtModelBuilder own = {.context = builder->context, .path = builder->path};
+    size_t triangleCount = 0;
+    status = pvtModelBuilder_Reserve(&own, mesh->positionCount, mesh->triangleCount, 1);
+    if (status == PVT_OK) {
+        status = PlaceMesh(&own, identity, mesh, &triangleCount);
+    }
+    if (status == PVT_OK) {
+        builder->model.meshes[meshIndex] = own.model.mesh;
+        own.model.mesh = (pvtMesh){0};
+    }
+    pvtModelBuilder_Free(&own);
+    return status;
+}
+
 pvtStatus pvtModelBuilder_AddPart(pvtModelBuilder* builder, const char* name, size_t meshIndex,
                                   const double transform[16], const pvtLocalMesh* mesh)
 {
@@ -167,7 +193,10 @@ pvtStatus pvtModelBuilder_AddPart(pvtModelBuilder* builder, const char* name, si
     }
     const size_t first = model->mesh.triangleCount;
     size_t triangleCount = 0;
-    const pvtStatus status = PlaceMesh(builder, transform, mesh, &triangleCount);
+    pvtStatus status = PlaceMesh(builder, transform, mesh, &triangleCount);
+    if (status == PVT_OK && triangleCount > 0 && builder->keepsMeshes) {
+        status = KeepLocal(builder, meshIndex, mesh);
+    }
     if (status != PVT_OK || triangleCount == 0) {
         return status;
     }

@@ -19,8 +19,9 @@ typedef struct pvtLocalMesh {
 typedef struct pvtModelBuilder {
     pvtContext* context;
     const char* path;
+    bool keepsMeshes; ///< fills the model's meshes
     pvtModel model;
-    size_t positionRoom, triangleRoom, partRoom;
+    size_t positionRoom, triangleRoom, partRoom, localRoom;
     size_t dropped; ///< triangles with a position that is not finite
 } pvtModelBuilder;
 

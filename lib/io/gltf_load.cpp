@@ -80,6 +80,7 @@ class OwnedBuilder
     {
         builder.context = job.context;
         builder.path = job.path;
+        builder.keepsMeshes = job.options->keepMeshes;
     }
     ~OwnedBuilder()
     {

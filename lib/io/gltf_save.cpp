@@ -2,12 +2,15 @@
 // glTF 2.0 through tinygltf's stream writer, which gets no file of its own: it would not notice a
 // full disk.
 #include "edge.hpp"
+#include "placement.h"
 #include "tinygltf.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <sstream>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace
 {
@@ -55,9 +58,12 @@ class Saver
     void CheckSize() const
     {
         std::size_t size = 0;
+        std::unordered_set<const pvtMesh*> counted;
         for (std::size_t i = 0; i < job_.count; ++i) {
             const pvtMesh& mesh = *job_.items[i].mesh;
-            size += 12 * mesh.positionCount + 12 * mesh.triangleCount;
+            if (counted.insert(&mesh).second) {
+                size += 12 * mesh.positionCount + 12 * mesh.triangleCount;
+            }
         }
         if (size > kMaxBufferSize) {
             throw pvt::Failure{pvtFail(job_.context, PVT_LIMIT,
@@ -81,20 +87,48 @@ class Saver
     void AddNode(std::size_t index)
     {
         const pvtSaveItem& item = job_.items[index];
-        tinygltf::Primitive primitive;
-        primitive.attributes["POSITION"] = AddPositions(*item.mesh);
-        primitive.indices = AddIndices(*item.mesh);
-        primitive.material = 0;
-        primitive.mode = TINYGLTF_MODE_TRIANGLES;
-        tinygltf::Mesh mesh;
-        mesh.name = GetName(index);
-        mesh.primitives.push_back(std::move(primitive));
         tinygltf::Node node;
-        node.name = mesh.name;
-        node.mesh = static_cast<int>(index);
+        node.name = GetName(index);
+        node.mesh = FindMesh(*item.mesh, node.name);
         node.extras = MakeExtras(item);
-        model_.meshes.push_back(std::move(mesh));
+        if (item.transform != nullptr) {
+            Place(item.transform, node);
+        }
         model_.nodes.push_back(std::move(node));
+    }
+
+    // The items of a mesh share one, which is named after the first of them.
+    int FindMesh(const pvtMesh& mesh, const std::string& name)
+    {
+        const auto [found, isNew] = meshes_.emplace(&mesh, static_cast<int>(model_.meshes.size()));
+        if (isNew) {
+            tinygltf::Primitive primitive;
+            primitive.attributes["POSITION"] = AddPositions(mesh);
+            primitive.indices = AddIndices(mesh);
+            primitive.material = 0;
+            primitive.mode = TINYGLTF_MODE_TRIANGLES;
+            tinygltf::Mesh made;
+            made.name = name;
+            made.primitives.push_back(std::move(primitive));
+            model_.meshes.push_back(std::move(made));
+        }
+        return found->second;
+    }
+
+    // Only what differs from doing nothing. Transforms with shear do not come here.
+    static void Place(const double* transform, tinygltf::Node& node)
+    {
+        pvtPlacement p;
+        pvtFindPlacement(transform, &p);
+        if (p.translation[0] != 0.0 || p.translation[1] != 0.0 || p.translation[2] != 0.0) {
+            node.translation.assign(p.translation, p.translation + 3);
+        }
+        if (p.rotation[0] != 0.0 || p.rotation[1] != 0.0 || p.rotation[2] != 0.0) {
+            node.rotation.assign(p.rotation, p.rotation + 4);
+        }
+        if (p.scale[0] != 1.0 || p.scale[1] != 1.0 || p.scale[2] != 1.0) {
+            node.scale.assign(p.scale, p.scale + 3);
+        }
     }
 
     // Valid UTF-8: the JSON writer throws at anything else.
@@ -194,6 +228,7 @@ class Saver
 
     const pvtSaveJob& job_;
     tinygltf::Model model_;
+    std::unordered_map<const pvtMesh*, int> meshes_;
 };
 
 void WriteGltf(const pvtSaveJob& job, bool binary, pvtOutput* output)

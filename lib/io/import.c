@@ -286,7 +286,8 @@ static pvtStatus BuildModel(const pvtLoadJob* job, const Scene* scene, pvtModel*
     if (places == NULL) {
         return pvtContext_GetStatus(context);
     }
-    pvtModelBuilder builder = {.context = context, .path = job->path};
+    pvtModelBuilder builder = {
+        .context = context, .path = job->path, .keepsMeshes = job->options->keepMeshes};
     pvtStatus status = PVT_OK;
     if (PlaceNodes(job, scene, places)) {
         status = AddNodes(scene, places, &builder);

@@ -27,6 +27,10 @@ void pvtModel_Free(pvtContext* context, pvtModel* model)
         pvtRelease(context, model->parts[i].name);
     }
     pvtRelease(context, model->parts);
+    for (size_t i = 0; i < model->meshCount; ++i) {
+        pvtMesh_Free(context, &model->meshes[i]);
+    }
+    pvtRelease(context, model->meshes);
     *model = (pvtModel){0};
 }
 

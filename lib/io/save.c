@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is saved is checked first, so that writers only write.
 #include "formats.h"
+#include "placement.h"
 #include "text.h"
 
 #include "base/context.h"
@@ -71,14 +72,19 @@ static pvtStatus CheckItems(const pvtSaveJob* job)
     if (job->count == 0) {
         return pvtFail(job->context, PVT_INVALID_ARGUMENT, "there is nothing to save");
     }
+    const pvtMesh* checked = NULL;
     for (size_t i = 0; i < job->count; ++i) {
         const pvtSaveItem* item = &job->items[i];
         char name[PVT_NAME_SIZE];
         pvtCleanName(item->name != NULL ? item->name : "", name);
-        const pvtStatus status = CheckMesh(job->context, name, item->mesh);
+        // Instances come one behind the other.
+        const pvtStatus status = item->mesh != NULL && item->mesh == checked
+                                     ? PVT_OK
+                                     : CheckMesh(job->context, name, item->mesh);
         if (status != PVT_OK) {
             return status;
         }
+        checked = item->mesh;
     }
     return PVT_OK;
 }
@@ -100,6 +106,21 @@ static pvtStatus Write(const pvtSaveJob* job, Format format, pvtOutput* output)
     return pvtWritePly(job, output);
 }
 
+static pvtStatus WriteFile(const pvtSaveJob* job, Format format, const char* path)
+{
+    pvtOutput* output = NULL;
+    pvtStatus status = pvtOpenOutput(job->context, path, &output);
+    if (status != PVT_OK) {
+        return status;
+    }
+    status = Write(job, format, output);
+    if (status != PVT_OK) {
+        pvtDiscardOutput(output);
+        return status;
+    }
+    return pvtCommitOutput(output);
+}
+
 pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem* items,
                        size_t count)
 {
@@ -110,19 +131,18 @@ pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem*
                        path);
     }
     const pvtSaveJob job = {context, items, count};
+    pvtPlacedItems placed = {0};
     pvtStatus status = CheckItems(&job);
-    if (status != PVT_OK) {
-        return status;
+    if (status == PVT_OK) {
+        status = pvtPlaceItems(&job, format == FORMAT_GLB || format == FORMAT_GLTF, &placed);
     }
-    pvtOutput* output = NULL;
-    status = pvtOpenOutput(context, path, &output);
-    if (status != PVT_OK) {
-        return status;
+    if (status == PVT_OK) {
+        const pvtSaveJob placedJob = {context, placed.items, placed.count};
+        status = CheckItems(&placedJob);
+        if (status == PVT_OK) {
+            status = WriteFile(&placedJob, format, path);
+        }
     }
-    status = Write(&job, format, output);
-    if (status != PVT_OK) {
-        pvtDiscardOutput(output);
-        return status;
-    }
-    return pvtCommitOutput(output);
+    pvtPlacedItems_Free(context, &placed);
+    return status;
 }

@@ -85,7 +85,8 @@ static void several_items_are_nodes_at_the_root_with_their_extras(void** state)
         {.key = "method", .text = "planar"},
         {.key = "measure", .number = NAN}, // JSON has no word for it
     };
-    const pvtSaveItem items[2] = {{"near", &cubes[0], extras, 4}, {"far", &cubes[1], NULL, 0}};
+    const pvtSaveItem items[2] = {{"near", &cubes[0], extras, 4, NULL},
+                                  {"far", &cubes[1], NULL, 0, NULL}};
     const char* path = InFolder(&f->folder, "two.gltf");
     CHECK_OK(f->context, pvtSaveModel(f->context, path, items, 2));
     CheckHolds(path, "\"generator\": \"paravent ");
@@ -210,7 +211,8 @@ static void a_scene_of_godot_is_written_to_the_letter(void** state)
         {.key = "none", .number = NAN},
         {.key = "a \"key\"", .text = "back\\slash\nand \"quotes\""},
     };
-    const pvtSaveItem items[2] = {{"wall", &mesh, extras, 3}, {"gate", &mesh, extras + 1, 1}};
+    const pvtSaveItem items[2] = {{"wall", &mesh, extras, 3, NULL},
+                                  {"gate", &mesh, extras + 1, 1, NULL}};
     const char* path = InFolder(&f->folder, "a.tscn");
     CHECK_OK(f->context, pvtSaveModel(f->context, path, items, 2));
     CheckHolds(path, "[gd_scene load_steps=3 format=3]\n\n"
@@ -353,7 +355,7 @@ static void every_failing_allocation_leaves_no_file(void** state)
     Fixture* f = *state;
     pvtMesh cube = MakeCube(f->context, 0.0, 1.0);
     const pvtExtra extra = {.key = "key", .text = "text"};
-    const pvtSaveItem item = {"box", &cube, &extra, 1};
+    const pvtSaveItem item = {"box", &cube, &extra, 1, NULL};
     const char* const names[] = {"a.glb", "a.gltf", "a.obj", "a.ply", "a.tscn"};
     for (int i = 0; i < 5; ++i) {
         pvtStatus status = PVT_OUT_OF_MEMORY;

@@ -19,6 +19,7 @@ typedef struct pvtLoadOptions {
     const char* node; ///< only nodes of this name and what is below them; null: everything
     pvtMasked masked; ///< default PVT_MASKED_AUTO
     size_t maxBytes;  ///< of any one file; default 4 GiB
+    bool keepMeshes;  ///< fill pvtModel's meshes too; default false
 } pvtLoadOptions;
 
 /// One instance of a mesh by a node: a run of triangles of the model's mesh. Where a node of OBJ,
@@ -26,7 +27,8 @@ typedef struct pvtLoadOptions {
 typedef struct pvtModelPart {
     char* name; ///< the node's, else the mesh's, else "node_12"; UTF-8
     size_t firstTriangle, triangleCount;
-    size_t meshIndex;     ///< parts with the same number are instances of the same mesh
+    size_t meshIndex;     ///< parts with the same number are instances of the same mesh: of
+                          ///< pvtModel's meshes, where they are kept
     double transform[16]; ///< mesh to world, column after column
 } pvtModelPart;
 
@@ -35,6 +37,8 @@ typedef struct pvtModel {
     pvtMesh mesh;
     pvtModelPart* parts;
     size_t partCount;
+    pvtMesh* meshes; ///< with keepMeshes: each in its own space; empty where no part takes it
+    size_t meshCount;
 } pvtModel;
 
 PVT_API pvtLoadOptions pvtDefaultLoadOptions(void);
@@ -68,6 +72,10 @@ typedef struct pvtSaveItem {
     const pvtMesh* mesh;
     const pvtExtra* extras;
     size_t extraCount;
+    /// 16 numbers, mesh to world, column after column; null: none. In glTF items with the same
+    /// `mesh` share it, and the node gets the transform; a transform with shear, and any in other
+    /// formats, moves a copy of the mesh.
+    const double* transform;
 } pvtSaveItem;
 
 /// Writes .glb, .gltf (with its buffer inside), .obj, .ply or .tscn by the path's ending; whole or

@@ -34,6 +34,18 @@ PVT_API pvtStatus pvtWeldMesh(pvtContext* context, const pvtMesh* mesh, pvtMesh*
 /// Adds `other`'s triangles behind those of `mesh`; on failure `mesh` is as it was.
 PVT_API pvtStatus pvtMesh_Append(pvtContext* context, pvtMesh* mesh, const pvtMesh* other);
 
+/// A mesh and where it stands. The transform has 16 numbers, column after column; null: none.
+typedef struct pvtPlacedMesh {
+    const pvtMesh* mesh;
+    const double* transform;
+} pvtPlacedMesh;
+
+/// All of them as one mesh, one behind the other. A transform that mirrors turns the triangles
+/// round, so that they face the same side as before. PVT_INVALID_INPUT for a position that does not
+/// stay finite.
+PVT_API pvtStatus pvtPlaceMeshes(pvtContext* context, const pvtPlacedMesh* placed, size_t count,
+                                 pvtMesh* joined);
+
 typedef struct pvtFaceDirectionOptions {
     int maxCount;       ///< 1 to 256, default 16: most directions that come out
     double angle;       ///< [rad] faces closer than this share a cluster; default 0.12
