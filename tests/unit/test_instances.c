@@ -53,7 +53,7 @@ static void placed_meshes_keep_their_outside_and_scale_their_volume(void** state
         const pvtPlacedMesh placed = {&cube, cases[i].transform};
         pvtMesh joined;
         CHECK_OK(context, pvtPlaceMeshes(context, &placed, 1, &joined));
-        CheckNear(GetSignedVolume(&joined), cases[i].volume, 1e-12);
+        CHECK_NEAR(GetSignedVolume(&joined), cases[i].volume, 1e-12);
         CheckBounds(&joined, cases[i].lower, cases[i].upper, 1e-12);
         pvtMesh_Free(context, &joined);
     }
@@ -61,7 +61,7 @@ static void placed_meshes_keep_their_outside_and_scale_their_volume(void** state
     pvtMesh joined;
     CHECK_OK(context, pvtPlaceMeshes(context, both, 2, &joined));
     assert_int_equal(joined.triangleCount, 24);
-    CheckNear(GetSignedVolume(&joined), 2.5, 1e-9);
+    CHECK_NEAR(GetSignedVolume(&joined), 2.5, 1e-9);
     pvtMesh_Free(context, &joined);
     const double huge[16] = {1e308, 0, 0, 0, 1e308, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     const pvtPlacedMesh far = {&cube, huge};
@@ -92,17 +92,17 @@ static void instances_share_a_mesh_and_come_back_with_their_transforms(void** st
         assert_int_equal(part->meshIndex, i == 2 ? 1 : 0);
         for (int k = 0; k < 16; ++k) {
             const double expected = transforms[i] != NULL ? transforms[i][k] : k % 5 == 0;
-            CheckNear(part->transform[k], expected, 1e-14);
+            CHECK_NEAR(part->transform[k], expected, 1e-14);
         }
     }
     for (size_t i = 0; i < 2; ++i) {
         const pvtMesh* mesh = &model.meshes[i];
         assert_int_equal(mesh->positionCount, 8);
         CheckBounds(mesh, (pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, 0.0);
-        CheckNear(GetSignedVolume(mesh), 1.0, 0.0);
+        CHECK_NEAR(GetSignedVolume(mesh), 1.0, 0.0);
         assert_memory_equal(mesh->indices, model.meshes[0].indices, 36 * sizeof(uint32_t));
     }
-    CheckNear(GetSignedVolume(&model.mesh), 1.0 + 1.0 + 8.0 + 1.5, 1e-9);
+    CHECK_NEAR(GetSignedVolume(&model.mesh), 1.0 + 1.0 + 8.0 + 1.5, 1e-9);
     pvtModel_Free(context, &model);
     pvtMesh_Free(context, &cube);
     pvtMesh_Free(context, &other);
@@ -123,11 +123,11 @@ static void what_cannot_be_a_node_is_moved(void** state)
                                  {.name = "flat", .mesh = &cube, .transform = flat}};
     pvtModel model = SaveAndLoad(context, InFolder(&folder, "sheared.gltf"), items, 3);
     assert_int_equal(model.meshCount, 3);
-    CheckNear(model.parts[0].transform[12], 5.0, 0.0);
-    CheckNear(model.parts[1].transform[4], 0.0, 0.0);
+    CHECK_NEAR(model.parts[0].transform[12], 5.0, 0.0);
+    CHECK_NEAR(model.parts[1].transform[4], 0.0, 0.0);
     CheckBounds(&model.meshes[1], (pvtVec3){0, 20, 0}, (pvtVec3){1.5, 21, 1}, 1e-6);
     CheckBounds(&model.meshes[2], (pvtVec3){0, 0, 0}, (pvtVec3){2, 0, 2}, 0.0);
-    CheckNear(GetSignedVolume(&model.mesh), 2.0, 1e-5);
+    CHECK_NEAR(GetSignedVolume(&model.mesh), 2.0, 1e-5);
     pvtModel_Free(context, &model);
     CHECK_OK(context, pvtSaveModel(context, InFolder(&folder, "moved.obj"), items, 1));
     char text[512] = "";
@@ -170,7 +170,7 @@ static void every_failing_allocation_leaves_nothing(void** state)
     options.keepMeshes = true;
     pvtStatus status = PVT_OUT_OF_MEMORY;
     for (int failAt = 1; status != PVT_OK; ++failAt) {
-        PoorHeap heap = {0, failAt};
+        PoorHeap heap = {.failAt = failAt};
         pvtContext* poor = CreatePoorContext(&heap);
         pvtModel model = {0};
         status = pvtSaveModel(poor, path, items, 2);
