@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "run.h"
+#include "targets.h"
 
 #include <paravent/evaluate.h>
 #include <paravent/occluder.h>
@@ -30,9 +31,6 @@ pvtBuildOptions pvtGetBenchBuildOptions(const pvtBenchLine* line, pvtMethod meth
 /// Where an occluder of the mesh may lie, at a resolution that need not be the line's.
 pvtStatus pvtMakeBenchGrid(pvtRun* run, const pvtBenchLine* line, int resolution,
                            const pvtMesh* mesh, pvtBitGrid* allowed);
-
-/// A path's last part.
-const char* pvtGetFileName(const char* path);
 
 typedef struct pvtQualityLine {
     pvtBenchLine bench;

@@ -3,7 +3,6 @@
 #include "bench.h"
 
 #include <math.h>
-#include <string.h>
 
 static const char* const axisChoices[] = {"x", "y", "z", NULL};
 
@@ -118,10 +117,4 @@ pvtStatus pvtMakeBenchGrid(pvtRun* run, const pvtBenchLine* line, int resolution
         pvtBitGrid_Free(run->context, &surface);
     }
     return status;
-}
-
-const char* pvtGetFileName(const char* path)
-{
-    const char* slash = strrchr(path, '/');
-    return slash != NULL ? slash + 1 : path;
 }

@@ -46,19 +46,13 @@ static pvtStatus CheckFiles(pvtRun* run, const pvtEvaluateLine* line, const Sess
     return status;
 }
 
-static const char* GetFileName(const char* path)
-{
-    const char* slash = strrchr(path, '/');
-    return slash != NULL && slash[1] != '\0' ? slash + 1 : path;
-}
-
 // The file's name, or the whole path where two would look alike.
 static void NameFiles(Session* session)
 {
     for (int i = 0; i < session->fileCount; ++i) {
-        session->names[i] = GetFileName(session->paths[i]);
+        session->names[i] = pvtGetFileName(session->paths[i]);
         for (int k = 0; k < session->fileCount; ++k) {
-            if (k != i && strcmp(session->names[i], GetFileName(session->paths[k])) == 0) {
+            if (k != i && strcmp(session->names[i], pvtGetFileName(session->paths[k])) == 0) {
                 session->names[i] = session->paths[i];
             }
         }

@@ -17,7 +17,7 @@ bool pvtPathEndsIn(const char* path, const char* ending)
     return length > endingLength && strcasecmp(path + length - endingLength, ending) == 0;
 }
 
-static const char* GetFileName(const char* path)
+const char* pvtGetFileName(const char* path)
 {
     const char* slash = strrchr(path, '/');
     return slash != NULL ? slash + 1 : path;
@@ -25,7 +25,7 @@ static const char* GetFileName(const char* path)
 
 void pvtGetStem(const char* path, char* name, size_t size)
 {
-    const char* file = GetFileName(path);
+    const char* file = pvtGetFileName(path);
     const char* dot = strrchr(file, '.');
     const size_t length = dot != NULL && dot != file ? (size_t)(dot - file) : strlen(file);
     size_t used = 0;
@@ -53,7 +53,7 @@ void pvtGetStem(const char* path, char* name, size_t size)
 // The folder that the path names a file in; the caller frees it.
 static char* CopyFolder(const char* path)
 {
-    const char* file = GetFileName(path);
+    const char* file = pvtGetFileName(path);
     if (file == path) {
         return strdup(".");
     }
@@ -73,7 +73,7 @@ static bool IsSameFile(const char* a, const char* b)
         return S_ISREG(infoA.st_mode) && infoA.st_dev == infoB.st_dev &&
                infoA.st_ino == infoB.st_ino;
     }
-    if (hasA != hasB || strcmp(GetFileName(a), GetFileName(b)) != 0) {
+    if (hasA != hasB || strcmp(pvtGetFileName(a), pvtGetFileName(b)) != 0) {
         return false;
     }
     char* folderA = CopyFolder(a);

@@ -19,6 +19,9 @@ pvtStatus pvtCheckTargets(pvtRun* run, const pvtTarget* targets, size_t count);
 /// Whether the path ends like ".png", in any case of letters.
 bool pvtPathEndsIn(const char* path, const char* ending);
 
+/// The path's last part.
+const char* pvtGetFileName(const char* path);
+
 /// The file's name without folders and its last ending, as UTF-8: "meshes/old.bunny.glb" gives
 /// "old.bunny". Bytes that are not UTF-8 become '_'. `name` is never empty.
 void pvtGetStem(const char* path, char* name, size_t size);
