@@ -3,7 +3,6 @@
 #include "bench.h"
 
 #include <paravent/io.h>
-#include <stdlib.h>
 
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtQualityLine, field)
 
@@ -155,30 +154,25 @@ static pvtStatus RunModel(pvtRun* run, const pvtQualityLine* line, const char* p
     return status;
 }
 
+static int RunLine(void* values, const pvtParsedLine* line)
+{
+    pvtQualityLine* quality = values;
+    pvtRun run;
+    pvtStatus status = pvtBeginRun(&quality->bench.common, &run);
+    if (status == PVT_OK) {
+        printf("budget %d triangles; %d views; first uniform quads, then small ones\n",
+               quality->bench.budget, quality->views);
+    }
+    for (int i = 0; i < line->operandCount && status == PVT_OK; ++i) {
+        status = RunModel(&run, quality, line->operands[i]);
+    }
+    return pvtEndRun(&run, status);
+}
+
 static int RunQuality(int count, char* const* words)
 {
     pvtQualityLine values = GetDefaultLine();
-    const char** operands = calloc((size_t)count + 1, sizeof *operands);
-    if (operands == NULL) {
-        fputs("paravent-bench: out of memory\n", stderr);
-        return PVT_EXIT_LIMIT;
-    }
-    pvtParsedLine line = {.operands = operands};
-    int exitCode = PVT_EXIT_DONE;
-    if (pvtReadCommandLine(&syntax, count, words, &values, &line, &exitCode)) {
-        pvtRun run;
-        pvtStatus status = pvtBeginRun(&values.bench.common, &run);
-        if (status == PVT_OK) {
-            printf("budget %d triangles; %d views; first uniform quads, then small ones\n",
-                   values.bench.budget, values.views);
-        }
-        for (int i = 0; i < line.operandCount && status == PVT_OK; ++i) {
-            status = RunModel(&run, &values, operands[i]);
-        }
-        exitCode = pvtEndRun(&run, status);
-    }
-    free(operands);
-    return exitCode;
+    return pvtRunCommandLine(&syntax, count, words, &values, RunLine);
 }
 
 const pvtCommand pvtQualityCommand = {&syntax, RunQuality};

@@ -2,8 +2,6 @@
 // paravent-bench speed: the small things that a build does most, then whole builds.
 #include "speed.h"
 
-#include <stdlib.h>
-
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtSpeedLine, field)
 
 static const pvtOption measureTable[] = {
@@ -49,7 +47,7 @@ static const pvtSyntax syntax = {
              "builds take --threads. The peak is what the library held, with the model.",
 };
 
-static int RunMeasurements(pvtSpeedLine* values, const char* path)
+static int RunMeasurements(const pvtSpeedLine* values, const char* path)
 {
     pvtRun run;
     pvtCommonOptions common = values->bench.common;
@@ -65,14 +63,17 @@ static int RunMeasurements(pvtSpeedLine* values, const char* path)
     return pvtEndRun(&run, status);
 }
 
-static int RunAll(pvtSpeedLine* values, const char* const* paths, int count)
+static int RunLine(void* values, const pvtParsedLine* line)
 {
-    int exitCode = RunMeasurements(values, count > 0 ? paths[0] : NULL);
+    const pvtSpeedLine* speed = values;
+    const char* const* paths = line->operands;
+    const int count = line->operandCount;
+    int exitCode = RunMeasurements(speed, count > 0 ? paths[0] : NULL);
     if (exitCode == PVT_EXIT_DONE) {
-        exitCode = pvtPrintBuildSpeeds(values, paths, count);
+        exitCode = pvtPrintBuildSpeeds(speed, paths, count);
     }
-    if (exitCode == PVT_EXIT_DONE && values->againstPaper) {
-        exitCode = pvtPrintPaperSpeeds(values, paths, count);
+    if (exitCode == PVT_EXIT_DONE && speed->againstPaper) {
+        exitCode = pvtPrintPaperSpeeds(speed, paths, count);
     }
     return exitCode;
 }
@@ -81,18 +82,7 @@ static int RunSpeed(int count, char* const* words)
 {
     pvtSpeedLine values = {
         .bench = pvtDefaultBenchLine(), .repeats = 5, .seconds = 0.2, .paperResolution = 128};
-    const char** operands = calloc((size_t)count + 1, sizeof *operands);
-    if (operands == NULL) {
-        fputs("paravent-bench: out of memory\n", stderr);
-        return PVT_EXIT_LIMIT;
-    }
-    pvtParsedLine line = {.operands = operands};
-    int exitCode = PVT_EXIT_DONE;
-    if (pvtReadCommandLine(&syntax, count, words, &values, &line, &exitCode)) {
-        exitCode = RunAll(&values, operands, line.operandCount);
-    }
-    free(operands);
-    return exitCode;
+    return pvtRunCommandLine(&syntax, count, words, &values, RunLine);
 }
 
 const pvtCommand pvtSpeedCommand = {&syntax, RunSpeed};

@@ -219,28 +219,23 @@ static void Release(pvtRun* run, Session* session)
     free(session->recalls);
 }
 
+static int RunLine(void* values, const pvtParsedLine* line)
+{
+    pvtEvaluateLine* options = values;
+    pvtRun run;
+    Session session = {.fileCount = line->operandCount, .paths = line->operands};
+    pvtStatus status = pvtBeginRun(&options->common, &run);
+    if (status == PVT_OK) {
+        status = Evaluate(&run, options, &session);
+        Release(&run, &session);
+    }
+    return pvtEndRun(&run, status);
+}
+
 static int RunEvaluate(int count, char* const* words)
 {
     pvtEvaluateLine values = pvtDefaultEvaluateLine();
-    const char** operands = calloc((size_t)count + 1, sizeof *operands);
-    if (operands == NULL) {
-        fputs("paravent evaluate: out of memory\n", stderr);
-        return PVT_EXIT_LIMIT;
-    }
-    pvtParsedLine line = {.operands = operands};
-    int exitCode = PVT_EXIT_DONE;
-    if (pvtReadCommandLine(&pvtEvaluateSyntax, count, words, &values, &line, &exitCode)) {
-        pvtRun run;
-        Session session = {.fileCount = line.operandCount, .paths = operands};
-        pvtStatus status = pvtBeginRun(&values.common, &run);
-        if (status == PVT_OK) {
-            status = Evaluate(&run, &values, &session);
-            Release(&run, &session);
-        }
-        exitCode = pvtEndRun(&run, status);
-    }
-    free(operands);
-    return exitCode;
+    return pvtRunCommandLine(&pvtEvaluateSyntax, count, words, &values, RunLine);
 }
 
 const pvtCommand pvtEvaluateCommand = {&pvtEvaluateSyntax, RunEvaluate};

@@ -96,6 +96,23 @@ bool pvtReadCommandLine(const pvtSyntax* syntax, int count, char* const* words, 
     return true;
 }
 
+int pvtRunCommandLine(const pvtSyntax* syntax, int count, char* const* words, void* values,
+                      pvtLineFcn* run)
+{
+    const char** operands = calloc((size_t)count + 1, sizeof *operands);
+    if (operands == NULL) {
+        fprintf(stderr, "%s %s: out of memory\n", pvtSyntax_GetProgram(syntax), syntax->name);
+        return PVT_EXIT_LIMIT;
+    }
+    pvtParsedLine line = {.operands = operands};
+    int exitCode = PVT_EXIT_DONE;
+    if (pvtReadCommandLine(syntax, count, words, values, &line, &exitCode)) {
+        exitCode = run(values, &line);
+    }
+    free(operands);
+    return exitCode;
+}
+
 static void TakeLog(pvtLogLevel level, const char* text, void* user)
 {
     pvtRun* run = user;

@@ -47,6 +47,13 @@ typedef struct pvtRun {
 bool pvtReadCommandLine(const pvtSyntax* syntax, int count, char* const* words, void* values,
                         pvtParsedLine* line, int* exitCode);
 
+/// What a command does with a line that was read; returns the exit code.
+typedef int pvtLineFcn(void* values, const pvtParsedLine* line);
+
+/// For commands that take any number of operands: reads the line and runs the command on it.
+int pvtRunCommandLine(const pvtSyntax* syntax, int count, char* const* words, void* values,
+                      pvtLineFcn* run);
+
 /// Watches the signals and makes the context; what the options leave open is filled in. `run` must
 /// stay where it is until pvtEndRun, which is due also on failure.
 pvtStatus pvtBeginRun(pvtCommonOptions* options, pvtRun* run);
