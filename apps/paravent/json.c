@@ -59,6 +59,16 @@ size_t pvtGetUtf8Length(const char* text)
     return isBad ? 0 : length;
 }
 
+size_t pvtMeasureCharacter(const char* text, bool* isHarmless)
+{
+    const unsigned char* bytes = (const unsigned char*)text;
+    const bool isControl =
+        bytes[0] < 0x20 || bytes[0] == 0x7F || (bytes[0] == 0xC2 && bytes[1] < 0xA0);
+    const size_t length = pvtGetUtf8Length(text);
+    *isHarmless = length > 0 && !isControl;
+    return length > 0 ? length : 1;
+}
+
 static void PutEscaped(pvtJson* json, const char* text)
 {
     Put(json, "\"");

@@ -46,5 +46,9 @@ void pvtJson_String(pvtJson* json, const char* key, const char* text);
 
 /// Bytes of the UTF-8 sequence that `text` begins with, 1 to 4; 0 when it is not valid or ended.
 size_t pvtGetUtf8Length(const char* text);
+/// Bytes of the character that `text` begins with, at least 1. It is harmless when it is UTF-8 and
+/// cannot steer a terminal as the control characters do, of ASCII and of Unicode (U+0080 to
+/// U+009F).
+size_t pvtMeasureCharacter(const char* text, bool* isHarmless);
 
 #endif

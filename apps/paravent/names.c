@@ -21,13 +21,13 @@ void pvtShortenName(const char* name, int columns, char* text, size_t size)
         ++skipped;
     }
     while (*name != '\0' && used + 5 < size) {
-        const size_t length = pvtGetUtf8Length(name);
-        const bool isHarmless = length > 1 || (*name >= 0x20 && *name != 0x7F && length == 1);
+        bool isHarmless;
+        const size_t length = pvtMeasureCharacter(name, &isHarmless);
         if (skipped-- <= 0) {
             memcpy(text + used, isHarmless ? name : "?", isHarmless ? length : 1);
             used += isHarmless ? length : 1;
         }
-        name += length > 0 ? length : 1;
+        name += length;
     }
     text[used] = '\0';
 }

@@ -44,21 +44,18 @@ void pvtReport_ClearBar(pvtReport* report)
     pthread_mutex_unlock(&report->lock);
 }
 
-// A text from a file may hold anything; a terminal must not be steered by it, neither by the
-// control characters of ASCII nor by those of Unicode, U+0080 to U+009F.
+// A text from a file may hold anything; a terminal must not be steered by it.
 static void PrintHarmless(FILE* stream, const char* text)
 {
     while (*text != '\0') {
-        const size_t length = pvtGetUtf8Length(text);
-        const unsigned char first = (unsigned char)text[0];
-        const bool isControl = (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F ||
-                               (first == 0xC2 && (unsigned char)text[1] < 0xA0);
-        if (length == 0 || isControl) {
-            fputc('?', stream);
-        } else {
+        bool isHarmless;
+        const size_t length = pvtMeasureCharacter(text, &isHarmless);
+        if (isHarmless || *text == '\n' || *text == '\t') {
             fwrite(text, 1, length, stream);
+        } else {
+            fputc('?', stream);
         }
-        text += length == 0 ? 1 : length;
+        text += length;
     }
 }
 

@@ -30,13 +30,12 @@ void pvtGetStem(const char* path, char* name, size_t size)
     const size_t length = dot != NULL && dot != file ? (size_t)(dot - file) : strlen(file);
     size_t used = 0;
     for (size_t i = 0; i < length;) {
-        size_t step = pvtGetUtf8Length(file + i);
-        const bool isValid = step != 0 && (unsigned char)file[i] >= 0x20 && file[i] != 0x7F;
-        step = step == 0 ? 1 : step;
+        bool isHarmless;
+        const size_t step = pvtMeasureCharacter(file + i, &isHarmless);
         if (used + step + 1 > size) {
             break;
         }
-        if (isValid) {
+        if (isHarmless) {
             memcpy(name + used, file + i, step);
             used += step;
         } else {

@@ -23,7 +23,7 @@ bool pvtPathEndsIn(const char* path, const char* ending);
 const char* pvtGetFileName(const char* path);
 
 /// The file's name without folders and its last ending, as UTF-8: "meshes/old.bunny.glb" gives
-/// "old.bunny". Bytes that are not UTF-8 become '_'. `name` is never empty.
+/// "old.bunny". Control characters and bytes that are not UTF-8 become '_'. `name` is never empty.
 void pvtGetStem(const char* path, char* name, size_t size);
 
 #endif

@@ -47,6 +47,13 @@ expect 0 "" evaluate "$boulder" small.gltf "${quick[@]}" --seed 2 --csv other.cs
 checks=$((checks + 1))
 cmp -s alone.csv other.csv && fail "another seed gives the same numbers"
 
+# A name that would steer a terminal, by ESC or by CSI in one character.
+odd=$'a\x1b\xc2\x9bb.gltf'
+cp small.gltf "$odd"
+expect 0 "" evaluate "$boulder" "$odd" "${quick[@]}"
+holds "the table shows a harmless name" grep -qF 'a??b.gltf' out
+rm "$odd"
+
 # Streams.
 expect 0 "" evaluate "$boulder" large.gltf "${quick[@]}" --json -
 holds "--json - puts nothing but JSON on stdout" node -e '

@@ -69,10 +69,12 @@ static void numbers_have_a_point_in_any_locale(void** state)
 {
     (void)state;
     static const char* const locales[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
-    for (size_t i = 0; i < sizeof locales / sizeof *locales; ++i) {
-        if (setlocale(LC_NUMERIC, locales[i]) != NULL) {
-            break;
-        }
+    const char* locale = NULL;
+    for (size_t i = 0; i < sizeof locales / sizeof *locales && locale == NULL; ++i) {
+        locale = setlocale(LC_NUMERIC, locales[i]);
+    }
+    if (locale == NULL) {
+        skip(); // no locale with a comma is installed
     }
     pvtJsonText text;
     pvtJson json = MakeLine(&text);
@@ -96,6 +98,25 @@ static void a_line_that_does_not_fit_stays_terminated(void** state)
     assert_int_equal(strlen(small), 7);
 }
 
+static void control_characters_are_not_harmless(void** state)
+{
+    (void)state;
+    static const struct {
+        const char* text;
+        size_t length;
+        bool isHarmless;
+    } cases[] = {{"a", 1, true},        {"\xc3\xa4", 2, true},
+                 {"\xc2\xa0", 2, true}, {"\xf0\x9f\x8f\xa0", 4, true},
+                 {"\x1b[2J", 1, false}, {"\n", 1, false},
+                 {"\x7f", 1, false},    {"\xc2\x9b", 2, false},
+                 {"\xff", 1, false},    {"\xc3", 1, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        bool isHarmless = !cases[i].isHarmless;
+        assert_int_equal(pvtMeasureCharacter(cases[i].text, &isHarmless), cases[i].length);
+        assert_int_equal(isHarmless, cases[i].isHarmless);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -104,6 +125,7 @@ int main(void)
         cmocka_unit_test(no_number_is_ever_nan_or_infinite),
         cmocka_unit_test(numbers_have_a_point_in_any_locale),
         cmocka_unit_test(a_line_that_does_not_fit_stays_terminated),
+        cmocka_unit_test(control_characters_are_not_harmless),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
