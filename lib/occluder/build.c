@@ -19,7 +19,8 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
     const NamedStep steps[] = {
         // Lengths in voxels and in world units settle each other.
         {"sizes", pvtResolveSizes, &build.stats.seconds.voxelize},
-        // The soup becomes voxels, whatever its topology: the input is not used after this.
+        // The soup becomes voxels, whatever its topology: after this only the directions that its
+        // faces look in are asked for.
         {"voxelize", pvtVoxelizeStep, &build.stats.seconds.voxelize},
         // What a flood from outside does not reach is inside; polygons may lie in part of it.
         {"solid", pvtFillStep, &build.stats.seconds.solid},

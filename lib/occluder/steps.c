@@ -5,6 +5,7 @@
 #include "base/vector.h"
 #include "ceiling.h"
 #include "refine.h"
+#include "voxel/bit_grid.h"
 
 #include <math.h>
 
@@ -152,33 +153,15 @@ pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build)
 // The box around the set voxels; false when there are none.
 static bool FindBounds(const pvtBitGrid* grid, pvtBox3* bounds)
 {
-    int low[3] = {grid->frame.size[0], grid->frame.size[1], grid->frame.size[2]};
-    int high[3] = {-1, -1, -1};
-    for (int z = 0; z < grid->frame.size[2]; ++z) {
-        for (int y = 0; y < grid->frame.size[1]; ++y) {
-            const size_t row = ((size_t)z * (size_t)grid->frame.size[1] + (size_t)y);
-            const uint64_t* words = grid->words + row * grid->wordsPerRow;
-            for (size_t w = 0; w < grid->wordsPerRow; ++w) {
-                if (words[w] == 0) {
-                    continue;
-                }
-                const int first = (int)(w * 64) + __builtin_ctzll(words[w]);
-                const int last = (int)(w * 64) + 63 - __builtin_clzll(words[w]);
-                low[0] = first < low[0] ? first : low[0];
-                high[0] = last > high[0] ? last : high[0];
-                low[1] = y < low[1] ? y : low[1];
-                high[1] = y > high[1] ? y : high[1];
-                low[2] = z < low[2] ? z : low[2];
-                high[2] = z;
-            }
-        }
-    }
+    pvtGridBox box;
+    const bool isFound = pvtBitGrid_FindBounds(grid, &box);
     const double h = grid->frame.voxelSize;
     const pvtVec3 o = grid->frame.origin;
-    bounds->lower = (pvtVec3){o.x + low[0] * h, o.y + low[1] * h, o.z + low[2] * h};
+    bounds->lower =
+        (pvtVec3){o.x + box.lower[0] * h, o.y + box.lower[1] * h, o.z + box.lower[2] * h};
     bounds->upper =
-        (pvtVec3){o.x + (high[0] + 1) * h, o.y + (high[1] + 1) * h, o.z + (high[2] + 1) * h};
-    return high[0] >= 0;
+        (pvtVec3){o.x + box.upper[0] * h, o.y + box.upper[1] * h, o.z + box.upper[2] * h};
+    return isFound;
 }
 
 static pvtStatus FailNothingInside(pvtContext* context, const pvtBuild* build)
@@ -224,11 +207,10 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
     solid.enclosed = options->enclosed;
     pvtStatus status = pvtFillSolid(context, &solid, &build->surface, &build->solid);
     if (status == PVT_OK) {
+        const pvtRemedy* remedy = &build->solid.remedy;
         build->stats.insideFraction = build->solid.insideFraction;
-        status =
-            pvtSuggestSmallestHole(context, &solid, &build->surface, &build->stats.suggestedHole);
-    }
-    if (status == PVT_OK) {
+        // With the ground as well, the hole alone would not fill it.
+        build->stats.suggestedHole = remedy->ground ? 0.0 : remedy->smallestHole;
         pvtBitGrid_Free(context, &build->surface);
         status =
             pvtMakeAllowedGrid(context, &build->solid, build->stats.tolerance, &build->allowed);
