@@ -73,23 +73,6 @@ double LoadComponent(const std::uint8_t* bytes, int type)
     }
 }
 
-// Integers that stand for fractions: glTF 2.0, section 3.11.
-double Normalize(double value, int type)
-{
-    switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-        return std::max(value / 127.0, -1.0);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return value / 255.0;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-        return std::max(value / 32767.0, -1.0);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return value / 65535.0;
-    default:
-        return value;
-    }
-}
-
 std::uint32_t LoadIndex(const std::uint8_t* bytes, int type)
 {
     if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) {
@@ -141,9 +124,58 @@ bool Fits(std::size_t count, std::size_t stride, std::size_t size, std::size_t o
 
 } // namespace
 
+double NormalizeGltf(double value, int type)
+{
+    switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return std::max(value / 127.0, -1.0);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return value / 255.0;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return std::max(value / 32767.0, -1.0);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return value / 65535.0;
+    default:
+        return value;
+    }
+}
+
 GltfAccessor::GltfAccessor(const GltfFile& file, std::size_t index)
 {
     const tinygltf::Accessor& accessor = file.model.accessors[index];
+    ReadType(file, accessor, index);
+    BindView(file, accessor);
+    if (accessor.sparse.isSparse) {
+        BindSparse(file, accessor);
+    }
+}
+
+GltfAccessor::GltfAccessor(const GltfFile& file, std::size_t index, const Span& elements)
+{
+    const tinygltf::Accessor& accessor = file.model.accessors[index];
+    ReadType(file, accessor, index);
+    if (elements.size / elementSize_ < count_) {
+        Refuse(file.job, "%s counts %zu elements, but only %zu were decoded", name_.c_str(), count_,
+               elements.size / elementSize_);
+    }
+    bytes_ = elements.bytes;
+    stride_ = elementSize_;
+    if (accessor.sparse.isSparse) {
+        BindSparse(file, accessor);
+    }
+}
+
+GltfAccessor::GltfAccessor(std::string name, const Span& indices)
+    : name_(std::move(name)), count_(indices.size / sizeof(std::uint32_t)),
+      stride_(sizeof(std::uint32_t)), elementSize_(sizeof(std::uint32_t)),
+      type_(TINYGLTF_TYPE_SCALAR), componentType_(TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT),
+      bytes_(indices.bytes)
+{
+}
+
+void GltfAccessor::ReadType(const GltfFile& file, const tinygltf::Accessor& accessor,
+                            std::size_t index)
+{
     name_ = "accessors[" + std::to_string(index) + "]";
     count_ = accessor.count;
     type_ = accessor.type;
@@ -155,10 +187,6 @@ GltfAccessor::GltfAccessor(const GltfFile& file, std::size_t index)
                componentType_);
     }
     elementSize_ = GetElementSize(type_, componentSize);
-    BindView(file, accessor);
-    if (accessor.sparse.isSparse) {
-        BindSparse(file, accessor);
-    }
 }
 
 void GltfAccessor::BindView(const GltfFile& file, const tinygltf::Accessor& accessor)
@@ -262,7 +290,7 @@ double GltfAccessor::GetNumber(std::size_t element, std::size_t component) const
     }
     const std::size_t offset = component * GetComponentSize(componentType_);
     const double value = LoadComponent(bytes + offset, componentType_);
-    return normalized_ ? Normalize(value, componentType_) : value;
+    return normalized_ ? NormalizeGltf(value, componentType_) : value;
 }
 
 std::uint32_t GltfAccessor::GetIndex(std::size_t element) const

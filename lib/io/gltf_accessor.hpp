@@ -16,12 +16,24 @@ struct GltfFile {
     GltfData& data;
 };
 
+/// Integers that stand for fractions: glTF 2.0, section 3.11.
+double NormalizeGltf(double value, int componentType);
+
 /// An accessor whose every byte was found to lie in its buffer view.
 class GltfAccessor
 {
   public:
     GltfAccessor(const GltfFile& file, std::size_t index);
+    /// The same with decoded elements, one behind the other, in the place of its view's bytes.
+    GltfAccessor(const GltfFile& file, std::size_t index, const Span& elements);
+    /// Indices that were decoded: a SCALAR of UNSIGNED_INT that no accessor describes.
+    GltfAccessor(std::string name, const Span& indices);
 
+    /// Where it stands in the file, such as "accessors[3]".
+    const std::string& Name() const
+    {
+        return name_;
+    }
     std::size_t Count() const
     {
         return count_;
@@ -49,13 +61,14 @@ class GltfAccessor
     pvtVec3 GetVec3(std::size_t element) const;
 
   private:
+    void ReadType(const GltfFile& file, const tinygltf::Accessor& accessor, std::size_t index);
     void BindView(const GltfFile& file, const tinygltf::Accessor& accessor);
     void BindSparse(const GltfFile& file, const tinygltf::Accessor& accessor);
     void CheckSparseIndices(const GltfFile& file) const;
     /// Where the element's first component lies; null when it is zero.
     const std::uint8_t* Find(std::size_t element) const;
 
-    std::string name_; // "accessors[3]"
+    std::string name_; // such as "accessors[3]"
     std::size_t count_ = 0, stride_ = 0, elementSize_ = 0;
     int type_ = 0, componentType_ = 0;
     bool normalized_ = false;

@@ -39,8 +39,8 @@ std::size_t CountTriangles(int mode, std::size_t indexCount)
 
 } // namespace
 
-GltfDecoder::GltfDecoder(const GltfFile& file)
-    : file_(file),
+GltfDecoder::GltfDecoder(const GltfFile& file, const GltfDraco& draco)
+    : file_(file), draco_(draco),
       quantized_(IsExtensionListed(file.document, "extensionsUsed", "KHR_mesh_quantization") ||
                  IsExtensionListed(file.document, "extensionsRequired", "KHR_mesh_quantization")),
       places_(file.job.context), origins_(file.job.context)
@@ -73,8 +73,8 @@ void GltfDecoder::CheckPositions(const GltfAccessor& positions, const std::strin
     const bool isQuantized = quantized_ && type >= TINYGLTF_COMPONENT_TYPE_BYTE &&
                              type <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
     if (!positions.Is(TINYGLTF_TYPE_VEC3) || !(isFloat || isQuantized)) {
-        Refuse(file_.job, "%s: POSITION is a %s; it must be a VEC3 of FLOAT%s", place.c_str(),
-               positions.Describe().c_str(),
+        Refuse(file_.job, "%s.attributes.POSITION is a %s; it must be a VEC3 of FLOAT%s",
+               place.c_str(), positions.Describe().c_str(),
                quantized_ ? " or of 8 or 16 bit integers"
                           : ", as long as the file does not use KHR_mesh_quantization");
     }
@@ -87,40 +87,67 @@ void GltfDecoder::CheckIndices(const GltfAccessor& indices, const std::string& p
         (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
          type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
          type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
-        Refuse(file_.job, "%s: indices are a %s; they must be a SCALAR of an unsigned type",
+        Refuse(file_.job, "%s.indices are a %s; they must be a SCALAR of an unsigned type",
                place.c_str(), indices.Describe().c_str());
     }
 }
 
 // The place of an element among the mesh's positions. places_ is never cleared: an entry counts
 // only when the position that it points at came from this very element.
-std::uint32_t GltfDecoder::AddPosition(const GltfAccessor& positions, std::size_t accessor,
-                                       std::uint32_t element, GltfMesh& mesh)
+std::uint32_t GltfDecoder::AddPosition(const Positions& positions, std::uint32_t element,
+                                       GltfMesh& mesh)
 {
     const std::uint32_t known = places_[element];
-    if (known < origins_.Size() && origins_[known].accessor == accessor &&
+    if (known < origins_.Size() && origins_[known].source == positions.source &&
         origins_[known].element == element) {
         return known;
     }
     if (mesh.positions.Size() >= UINT32_MAX - 1) {
         Refuse(file_.job, PVT_LIMIT, "a mesh has more positions than 32 bits can index");
     }
+    const pvtVec3 position = positions.accessor.GetVec3(element);
+    positions.range.Check(position, element);
     const std::uint32_t place = static_cast<std::uint32_t>(mesh.positions.Size());
-    mesh.positions.Push(positions.GetVec3(element));
-    origins_.Push({accessor, element});
+    mesh.positions.Push(position);
+    origins_.Push({positions.source, element});
     places_[element] = place;
     return place;
 }
 
-void GltfDecoder::DecodePrimitive(const tinygltf::Primitive& primitive, const std::string& place,
-                                  GltfMesh& mesh)
+// An attribute of a primitive, wherever its data comes from.
+GltfAccessor GltfDecoder::OpenAttribute(std::size_t mesh, std::size_t primitive,
+                                        const char* name) const
 {
+    if (draco_.Has(mesh, primitive)) {
+        std::optional<GltfAccessor> decoded = draco_.OpenAttribute(mesh, primitive, name);
+        if (decoded) {
+            return *decoded;
+        }
+    }
+    const auto& attributes = file_.model.meshes[mesh].primitives[primitive].attributes;
+    return GltfAccessor(file_, static_cast<std::size_t>(attributes.at(name)));
+}
+
+// The same for its indices, which it has.
+GltfAccessor GltfDecoder::OpenIndices(std::size_t mesh, std::size_t primitive) const
+{
+    if (draco_.Has(mesh, primitive)) {
+        return draco_.OpenIndices(mesh, primitive);
+    }
+    const int accessor = file_.model.meshes[mesh].primitives[primitive].indices;
+    return GltfAccessor(file_, static_cast<std::size_t>(accessor));
+}
+
+void GltfDecoder::DecodePrimitive(std::size_t meshIndex, std::size_t index, GltfMesh& mesh)
+{
+    const tinygltf::Primitive& primitive = file_.model.meshes[meshIndex].primitives[index];
+    const std::string place = GetGltfPlace(meshIndex, index);
+    const bool compressed = draco_.Has(meshIndex, index);
     const std::size_t accessor = static_cast<std::size_t>(primitive.attributes.at("POSITION"));
-    const GltfAccessor positions(file_, accessor);
+    const GltfAccessor positions = OpenAttribute(meshIndex, index, "POSITION");
     CheckPositions(positions, place);
-    const bool indexed = primitive.indices >= 0;
-    const std::size_t source = indexed ? static_cast<std::size_t>(primitive.indices) : accessor;
-    const GltfAccessor indices(file_, source);
+    const bool indexed = compressed || primitive.indices >= 0;
+    const GltfAccessor indices = indexed ? OpenIndices(meshIndex, index) : positions;
     if (indexed) {
         CheckIndices(indices, place);
     }
@@ -128,31 +155,36 @@ void GltfDecoder::DecodePrimitive(const tinygltf::Primitive& primitive, const st
         Refuse(file_.job, PVT_LIMIT, "%s has more positions than 32 bits can index", place.c_str());
     }
     places_.Resize(std::max(places_.Size(), positions.Count()));
+    const GltfRange range(file_, accessor, place + ".attributes.POSITION", compressed);
+    const Positions source = {positions,
+                              compressed ? file_.model.accessors.size() + index : accessor, range};
+    // Draco stores strips as lists.
+    const int mode = compressed ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
 
     const auto getIndex = [&](std::size_t i) {
-        const std::uint32_t index = indexed ? indices.GetIndex(i) : static_cast<std::uint32_t>(i);
-        if (index >= positions.Count()) {
+        const std::uint32_t element = indexed ? indices.GetIndex(i) : static_cast<std::uint32_t>(i);
+        if (element >= positions.Count()) {
             Refuse(file_.job,
-                   "%s: index %zu (of accessors[%zu]) is %u, but there are only %zu positions",
-                   place.c_str(), i, source, index, positions.Count());
+                   "%s.indices: element %zu (of %s) is %u, but there are only %zu positions",
+                   place.c_str(), i, indices.Name().c_str(), element, positions.Count());
         }
-        return index;
+        return element;
     };
-    const std::size_t count = CountTriangles(primitive.mode, indices.Count());
+    const std::size_t count = CountTriangles(mode, indices.Count());
     for (std::size_t t = 0; t < count; ++t) {
         if (t % kPollTriangles == 0) {
             Poll(file_.job.context);
         }
-        const Corners corners = GetCorners(primitive.mode, t);
+        const Corners corners = GetCorners(mode, t);
         const std::uint32_t a = getIndex(corners.a), b = getIndex(corners.b),
                             c = getIndex(corners.c);
         // Strips are stitched by triangles that repeat an index. They are never seen, but would
         // count as the segment between the pieces.
-        if (primitive.mode != TINYGLTF_MODE_TRIANGLES && (a == b || b == c || c == a)) {
+        if (mode != TINYGLTF_MODE_TRIANGLES && (a == b || b == c || c == a)) {
             continue;
         }
-        for (const std::uint32_t index : {a, b, c}) {
-            mesh.indices.Push(AddPosition(positions, accessor, index, mesh));
+        for (const std::uint32_t element : {a, b, c}) {
+            mesh.indices.Push(AddPosition(source, element, mesh));
         }
     }
 }
@@ -164,19 +196,11 @@ GltfMesh GltfDecoder::Decode(std::size_t index)
     origins_.Resize(0);
     for (std::size_t i = 0; i < source.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = source.primitives[i];
-        const std::string place =
-            "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
-        if (primitive.extensions.count("KHR_draco_mesh_compression") != 0) {
-            Refuse(file_.job, PVT_UNSUPPORTED,
-                   "%s is compressed by KHR_draco_mesh_compression, which is not supported; export "
-                   "it without",
-                   place.c_str());
-        }
         const bool hasTriangles = primitive.mode >= TINYGLTF_MODE_TRIANGLES;
         if (hasTriangles && !IsOmitted(primitive)) {
             morphed_ += primitive.targets.empty() ? 0 : 1;
             ++drawn_;
-            DecodePrimitive(primitive, place, mesh);
+            DecodePrimitive(index, i, mesh);
         }
     }
     return mesh;

@@ -4,7 +4,8 @@
 #define PVT_IO_GLTF_GEOMETRY_HPP
 
 #include "builder.h"
-#include "gltf_accessor.hpp"
+#include "gltf_draco.hpp"
+#include "gltf_range.hpp"
 
 namespace pvt
 {
@@ -27,7 +28,7 @@ struct GltfMesh {
 class GltfDecoder
 {
   public:
-    explicit GltfDecoder(const GltfFile& file);
+    GltfDecoder(const GltfFile& file, const GltfDraco& draco);
 
     GltfMesh Decode(std::size_t mesh);
     /// One warning for each kind of thing that was left out.
@@ -36,21 +37,28 @@ class GltfDecoder
     void RefuseIfAllOmitted() const;
 
   private:
-    /// Where a position came from: an element of an accessor.
+    /// Where a position came from: an element of a source.
     struct Origin {
-        std::size_t accessor;
+        std::size_t source;
         std::uint32_t element;
+    };
+    /// A primitive's positions. Those that share an accessor have the same source.
+    struct Positions {
+        const GltfAccessor& accessor;
+        std::size_t source;
+        const GltfRange& range;
     };
 
     bool IsOmitted(const tinygltf::Primitive& primitive);
-    void DecodePrimitive(const tinygltf::Primitive& primitive, const std::string& place,
-                         GltfMesh& mesh);
+    void DecodePrimitive(std::size_t meshIndex, std::size_t index, GltfMesh& mesh);
+    GltfAccessor OpenAttribute(std::size_t mesh, std::size_t primitive, const char* name) const;
+    GltfAccessor OpenIndices(std::size_t mesh, std::size_t primitive) const;
     void CheckPositions(const GltfAccessor& positions, const std::string& place) const;
     void CheckIndices(const GltfAccessor& indices, const std::string& place) const;
-    std::uint32_t AddPosition(const GltfAccessor& positions, std::size_t accessor,
-                              std::uint32_t element, GltfMesh& mesh);
+    std::uint32_t AddPosition(const Positions& positions, std::uint32_t element, GltfMesh& mesh);
 
     const GltfFile& file_;
+    const GltfDraco& draco_;
     bool quantized_;
     Array<std::uint32_t> places_; // by element: where it may be among the mesh's positions
     Array<Origin> origins_;       // one a position of the mesh

@@ -143,7 +143,8 @@ void LoadGltf(const pvtLoadJob& job, const pvtSource& source, pvtModel* model)
     pvtReportProgress(job.context, 0.6);
 
     const std::vector<GltfInstance> instances = FindGltfInstances(file);
-    GltfDecoder decoder(file);
+    const GltfDraco draco(file, instances);
+    GltfDecoder decoder(file, draco);
     std::map<std::size_t, UsedMesh> meshes = DecodeMeshes(decoder, instances);
     pvtReportProgress(job.context, 0.8);
 

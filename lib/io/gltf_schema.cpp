@@ -16,10 +16,11 @@ namespace
 enum class Kind {
     Index,   // into the collection `target`
     Indices, // a list of those
-    Map,     // an object whose values are those
+    Map,     // an object whose values are those; without `target`, any 32-bit numbers
     Integer, // minimum to maximum
     Number,
-    Numbers, // exactly `maximum` of them
+    Numbers,    // exactly `maximum` of them
+    NumberList, // any number of them
     Text,
     Choice, // one of the texts in `target`, which stand between bars
     Flag,
@@ -132,14 +133,24 @@ constexpr Field kAccessorFields[] = {
     Integer("count", 0, kMaxSize, kRequired),
     {"type", Kind::Choice, kRequired, "|SCALAR|VEC2|VEC3|VEC4|MAT2|MAT3|MAT4|"},
     Plain("normalized", Kind::Flag),
+    Plain("min", Kind::NumberList),
+    Plain("max", Kind::NumberList),
     Object("sparse", kSparse),
 };
 
+constexpr Field kDracoFields[] = {
+    Index("bufferView", "bufferViews", kRequired),
+    {"attributes", Kind::Map, kRequired, nullptr}, // Draco's own ids
+};
+constexpr Table kDraco = MakeTable(kDracoFields);
+constexpr Field kPrimitiveExtensionFields[] = {Object("KHR_draco_mesh_compression", kDraco)};
+constexpr Table kPrimitiveExtensions = MakeTable(kPrimitiveExtensionFields);
 constexpr Field kPrimitiveFields[] = {
     {"attributes", Kind::Map, kRequired, "accessors"},
     Index("indices", "accessors"),
     Index("material", "materials"),
     Integer("mode", 0, 6),
+    Object("extensions", kPrimitiveExtensions),
 };
 constexpr Table kPrimitive = MakeTable(kPrimitiveFields);
 constexpr Field kMeshFields[] = {
@@ -252,6 +263,8 @@ class Checker
             return CheckIndices(value, field, place);
         case Kind::Numbers:
             return CheckNumbers(value, static_cast<std::size_t>(field.maximum), place);
+        case Kind::NumberList:
+            return CheckNumbers(value, value.size(), place);
         case Kind::Number:
             return Expect(value.is_number(), "a number", place);
         case Kind::Text:
@@ -319,7 +332,11 @@ class Checker
         for (auto it = values.begin(); it != values.end(); ++it) {
             const std::string name =
                 map ? "." + Clean(it.key()) : "[" + std::to_string(it - values.begin()) + "]";
-            CheckIndex(*it, field, place + name);
+            if (field.target == nullptr) {
+                CheckInteger(*it, 0, UINT32_MAX, place + name);
+            } else {
+                CheckIndex(*it, field, place + name);
+            }
         }
     }
 
@@ -352,10 +369,11 @@ class Checker
 bool IsKnownExtension(const std::string& name)
 {
     static const char* const known[] = {
-        "KHR_mesh_quantization", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
-        "KHR_texture_transform", "KHR_texture_basisu",      "KHR_lights_punctual",
-        "KHR_xmp_json_ld",       "KHR_animation_pointer",   "EXT_texture_webp",
-        "EXT_texture_avif",      "EXT_lights_image_based",  "MSFT_texture_dds",
+        "KHR_mesh_quantization",      "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
+        "KHR_draco_mesh_compression", "KHR_texture_transform",   "KHR_texture_basisu",
+        "KHR_lights_punctual",        "KHR_xmp_json_ld",         "KHR_animation_pointer",
+        "EXT_texture_webp",           "EXT_texture_avif",        "EXT_lights_image_based",
+        "MSFT_texture_dds",
     };
     for (const char* each : known) {
         if (name == each) {

@@ -40,7 +40,7 @@ static const void* TakeArray(const uint8_t** at, size_t* left, uint64_t count, s
     return array;
 }
 
-static bool BindArrays(const pvtImportResult* result, Scene* scene)
+static bool BindArrays(const pvtChildResult* result, Scene* scene)
 {
     const pvtImportHeader* header = (const pvtImportHeader*)(const void*)result->bytes;
     const uint8_t* at = result->bytes + sizeof *header;
@@ -101,7 +101,7 @@ static bool IsMeshSound(const Scene* scene, const pvtImportMesh* mesh)
     return true;
 }
 
-static pvtStatus BindScene(const pvtLoadJob* job, const pvtImportResult* result, Scene* scene)
+static pvtStatus BindScene(const pvtLoadJob* job, const pvtChildResult* result, Scene* scene)
 {
     const pvtImportHeader* header = (const pvtImportHeader*)(const void*)result->bytes;
     if (header->status == PVT_IMPORT_OUT_OF_MEMORY) {
@@ -312,7 +312,7 @@ pvtStatus pvtImportModel(const pvtLoadJob* job, pvtModel* model)
                        "%s: there is no scene %d; only glTF has several", job->path,
                        job->options->scene);
     }
-    pvtImportResult result;
+    pvtChildResult result;
     pvtStatus status = pvtRunImporter(job, &result);
     if (status != PVT_OK) {
         return status;
@@ -323,6 +323,6 @@ pvtStatus pvtImportModel(const pvtLoadJob* job, pvtModel* model)
     if (status == PVT_OK) {
         status = BuildModel(job, &scene, model);
     }
-    pvtImportResult_Free(&result);
+    pvtChildResult_Free(&result);
     return status;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // paravent-import ENDING MEMORY SECONDS: reads a model from descriptor 3 by assimp, and writes a
 // result (import_result.h) to descriptor 4. It opens no other file, whatever the model names.
+#include "child_main.hpp"
 #include "import_checks.hpp"
 #include "import_result.h"
 
@@ -21,20 +22,13 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
 namespace
 {
 
-// The model's own bytes.
-struct Input {
-    const char* bytes;
-    std::size_t size;
-};
+using pvt::Input;
 
 class InputStream : public Assimp::IOStream
 {
@@ -314,51 +308,11 @@ void WriteResult(std::FILE* file, const Result& result, pvtImportHeader& header)
     }
 }
 
-void SetLimit(__rlimit_resource resource, rlim_t most)
-{
-    rlimit limit{};
-    if (getrlimit(resource, &limit) == 0) {
-        limit.rlim_cur = std::min(limit.rlim_max, most);
-        limit.rlim_max = limit.rlim_cur;
-        (void)setrlimit(resource, &limit);
-    }
-}
-
-void SetLimits(const char* memory, const char* seconds)
-{
-    SetLimit(RLIMIT_CORE, 0);
-    // Above the first limit a signal that tells why, above the second the end.
-    const rlim_t most = std::strtoull(seconds, nullptr, 10);
-    rlimit time{most, most + 5};
-    (void)setrlimit(RLIMIT_CPU, &time);
-    SetLimit(RLIMIT_NOFILE, PVT_IMPORT_ALIVE + 1); // no further file can be opened
-#if !defined(__SANITIZE_ADDRESS__) && !defined(PVT_IMPORT_SANITIZED)
-    SetLimit(RLIMIT_AS, std::strtoull(memory, nullptr, 10));
-#else
-    (void)memory; // a sanitizer's own map is larger than any limit
-#endif
-}
-
-Input MapInput()
-{
-    struct stat info {
-    };
-    if (fstat(PVT_IMPORT_INPUT, &info) != 0 || info.st_size <= 0) {
-        throw std::runtime_error("it cannot be read");
-    }
-    const std::size_t size = static_cast<std::size_t>(info.st_size);
-    void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, PVT_IMPORT_INPUT, 0);
-    if (bytes == MAP_FAILED) {
-        throw std::bad_alloc();
-    }
-    return {static_cast<const char*>(bytes), size};
-}
-
 // The status that goes into the header, and its text.
 pvtImportStatus Run(const char* ending, std::FILE* file, pvtImportHeader& header)
 {
     try {
-        WriteResult(file, ReadModel(MapInput(), ending), header);
+        WriteResult(file, ReadModel(pvt::MapChildInput(), ending), header);
         return PVT_IMPORT_DONE;
     } catch (const std::bad_alloc&) {
         return PVT_IMPORT_OUT_OF_MEMORY;
@@ -375,12 +329,12 @@ pvtImportStatus Run(const char* ending, std::FILE* file, pvtImportHeader& header
 
 int main(int argc, char** argv)
 {
-    std::FILE* file = argc == 4 ? fdopen(PVT_IMPORT_OUTPUT, "wb") : nullptr;
+    std::FILE* file = argc == 4 ? fdopen(PVT_CHILD_OUTPUT, "wb") : nullptr;
     if (file == nullptr) {
         (void)std::fprintf(stderr, "paravent-import is run by paravent, not by hand\n");
         return 1;
     }
-    SetLimits(argv[2], argv[3]);
+    pvt::SetChildLimits(argv[2], argv[3]);
     std::string ending = argv[1];
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
@@ -392,7 +346,7 @@ int main(int argc, char** argv)
     std::memcpy(header.magic, PVT_IMPORT_MAGIC, sizeof header.magic);
     header.version = PVT_IMPORT_VERSION;
     const bool written =
-        pwrite(PVT_IMPORT_OUTPUT, &header, sizeof header, 0) == static_cast<ssize_t>(sizeof header);
+        pwrite(PVT_CHILD_OUTPUT, &header, sizeof header, 0) == static_cast<ssize_t>(sizeof header);
     // Nothing is torn down: the process ends here.
     _exit(written ? 0 : 1);
 }

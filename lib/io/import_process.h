@@ -5,18 +5,12 @@
 #ifndef PVT_IO_IMPORT_PROCESS_H
 #define PVT_IO_IMPORT_PROCESS_H
 
-#include "formats.h"
+#include "child_process.h"
 #include "import_result.h"
 
-/// The process's result, mapped into memory: at least a header, which says that it is whole.
-typedef struct pvtImportResult {
-    const uint8_t* bytes;
-    size_t size;
-} pvtImportResult;
-
-/// Runs the importer over the job's file, by the ending of its path, and waits; kills it when the
-/// caller cancels. Memory is bounded by what the context may still take, time by the file's size.
-pvtStatus pvtRunImporter(const pvtLoadJob* job, pvtImportResult* result);
-void pvtImportResult_Free(pvtImportResult* result);
+/// Runs the importer over the job's file, by the ending of its path. The result is at least a
+/// header, which says that it is whole. Memory is bounded by what the context may still take, time
+/// by the file's size.
+pvtStatus pvtRunImporter(const pvtLoadJob* job, pvtChildResult* result);
 
 #endif

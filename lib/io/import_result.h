@@ -9,10 +9,6 @@
 enum {
     PVT_IMPORT_VERSION = 1,
     PVT_IMPORT_TEXT_SIZE = 512,
-    /// The descriptors that the process begins with.
-    PVT_IMPORT_INPUT = 3,
-    PVT_IMPORT_OUTPUT = 4,
-    PVT_IMPORT_ALIVE = 5, ///< closed when the process ends
 };
 
 #define PVT_IMPORT_MAGIC "pvtimpr"

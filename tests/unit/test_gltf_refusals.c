@@ -81,9 +81,10 @@ static void lies_are_refused_with_their_place_and_reason(void** state)
         {"'componentType':5126", "'componentType':5124", "accessors[0].componentType is 5124", 0},
         {"'componentType':5126", "'componentType':5130", "accessors[0].componentType is 5130", 0},
         {"'componentType':5123", "'componentType':5126", "accessors[1] counts 36 elements", 0},
-        {"'componentType':5123", "'componentType':5122", "meshes[0].primitives[0]: indices are", 0},
+        {"'componentType':5123", "'componentType':5122", "meshes[0].primitives[0].indices are", 0},
         {"'type':'VEC3'", "'type':'VEC5'", "accessors[0].type is \"VEC5\"", 0},
-        {"'type':'VEC3'", "'type':'VEC2'", "POSITION is a VEC2 of FLOAT", 0},
+        {"'type':'VEC3'", "'type':'VEC2'",
+         "meshes[0].primitives[0].attributes.POSITION is a VEC2 of FLOAT", 0},
         {"'bufferView':0", "'bufferView':2", "accessors[0].bufferView is 2", 0},
         {"'buffer':0", "'buffer':1", "bufferViews[0].buffer is 1", 0},
         {"'POSITION':0", "'POSITION':2", "primitives[0].attributes.POSITION is 2", 0},
@@ -131,8 +132,9 @@ static void indices_out_of_range_are_refused(void** state)
     Pack cube = PackCube();
     const uint16_t bad = 8;
     memcpy(cube.bytes + 96 + 2 * 35, &bad, 2);
-    CheckRefused(f, LoadGlb(f, CUBE, &cube), PVT_INVALID_INPUT,
-                 "meshes[0].primitives[0]: index 35 (of accessors[1]) is 8, but there are only 8");
+    CheckRefused(
+        f, LoadGlb(f, CUBE, &cube), PVT_INVALID_INPUT,
+        "meshes[0].primitives[0].indices: element 35 (of accessors[1]) is 8, but there are only 8");
 }
 
 static void counts_without_data_are_limited(void** state)

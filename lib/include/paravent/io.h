@@ -49,11 +49,13 @@ PVT_API pvtLoadOptions pvtDefaultLoadOptions(void);
 /// warning; blended materials are left out with one, and skins and morph targets give their bind
 /// pose with one. PVT_INVALID_INPUT names file, place, reason and remedy; PVT_UNSUPPORTED names the
 /// format or the required extension that is missing; PVT_INVALID_ARGUMENT the scene or node that is
-/// not there. A file without any triangle is PVT_INVALID_INPUT.
+/// not there. A file without any triangle is PVT_INVALID_INPUT, and so is one that contradicts
+/// itself: counts, ranges and bounds are held against the data.
 ///
 /// OBJ, PLY, STL, FBX and DAE are parsed by assimp in a process of its own, the program
-/// paravent-import, which is looked for in the folders of PARAVENT_MODULE_PATH, then in
-/// "paravent" and "../lib/paravent" beside the program or library, then where it was installed.
+/// paravent-import, and what KHR_draco_mesh_compression holds by paravent-draco. They are looked
+/// for in the folders of PARAVENT_MODULE_PATH, then in "paravent" and "../lib/paravent" beside the
+/// program or library, then where they were installed; PVT_UNSUPPORTED without them.
 PVT_API pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* options, const char* path,
                                pvtModel* model);
 PVT_API void pvtModel_Free(pvtContext* context, pvtModel* model);
