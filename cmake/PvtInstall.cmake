@@ -44,7 +44,7 @@ endfunction()
 
 pvt_install_library(core PC paravent
     DESCRIPTION "${PROJECT_DESCRIPTION}"
-    HEADERS base.h evaluate.h image.h mesh.h occluder.h occlusion.h output.h paravent.h section.h
+    HEADERS base.h evaluate.h image.h ladder.h mesh.h occluder.h occlusion.h output.h paravent.h section.h
             voxel.h
     PRIVATE_LIBS -lm -pthread)
 if(PARAVENT_GL)

@@ -15,5 +15,6 @@ typedef struct pvtCommand {
 
 extern const pvtCommand pvtGenerateCommand;
 extern const pvtCommand pvtEvaluateCommand;
+extern const pvtCommand pvtLadderCommand;
 
 #endif

@@ -101,10 +101,15 @@ static bool IsSet(const pvtOption* option, const pvtGenerateOptions* options)
     if (strcmp(option->name, "resolution") == 0) {
         return options->error == 0.0;
     }
-    if (option->kind == PVT_OPTION_INT) {
-        return *(const int*)((const char*)options + option->offset) >= 0;
+    const void* field = (const char*)options + option->offset;
+    switch (option->kind) {
+    case PVT_OPTION_INT:
+        return *(const int*)field >= 0;
+    case PVT_OPTION_LENGTH:
+        return ((const pvtLength*)field)->value >= 0.0;
+    default:
+        return true;
     }
-    return true;
 }
 
 void pvtWriteOptions(pvtJson* json, const pvtSyntax* syntax, const pvtGenerateOptions* options)

@@ -9,6 +9,7 @@
 static const pvtCommand* const commands[] = {
     &pvtGenerateCommand,
     &pvtEvaluateCommand,
+    &pvtLadderCommand,
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

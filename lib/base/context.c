@@ -11,7 +11,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { MESSAGE_SIZE = 2048, ALIGNMENT = 64 };
+enum { MESSAGE_SIZE = 2048, ALIGNMENT = 64, SCOPE_SIZE = 24, STAGE_SIZE = 64 };
 
 struct pvtContext {
     pvtContextDef def;
@@ -19,7 +19,8 @@ struct pvtContext {
     pthread_mutex_t messageLock;
     char message[MESSAGE_SIZE];
     _Atomic pvtStatus status;
-    const char* stage;
+    char scope[SCOPE_SIZE]; // what the stages belong to; "" for nothing
+    char stage[STAGE_SIZE];
     double reported;
     atomic_size_t held, peak;
 };
@@ -66,7 +67,6 @@ pvtStatus pvtCreateContext(const pvtContextDef* def, pvtContext** context)
     }
     memset(made, 0, sizeof *made);
     made->def = full;
-    made->stage = "";
     pthread_mutex_init(&made->messageLock, NULL);
     *context = made;
     return PVT_OK;
@@ -155,9 +155,11 @@ void pvtLog(pvtContext* context, pvtLogLevel level, const char* format, ...)
         return;
     }
     char text[MESSAGE_SIZE];
+    const bool isScoped = context->scope[0] != '\0';
+    const int used = snprintf(text, sizeof text, "%s%s", context->scope, isScoped ? ": " : "");
     va_list arguments;
     va_start(arguments, format);
-    (void)vsnprintf(text, sizeof text, format, arguments);
+    (void)vsnprintf(text + used, sizeof text - (size_t)used, format, arguments);
     va_end(arguments);
     context->def.log(level, text, context->def.user);
 }
@@ -252,9 +254,19 @@ void pvtRelease(pvtContext* context, void* memory)
     context->def.allocator.release(context->def.allocator.user, header.raw);
 }
 
+void pvtSetStageScope(pvtContext* context, const char* format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(context->scope, SCOPE_SIZE, format, arguments);
+    va_end(arguments);
+}
+
 void pvtBeginStage(pvtContext* context, const char* name)
 {
-    context->stage = name;
+    const bool isScoped = context->scope[0] != '\0';
+    (void)snprintf(context->stage, STAGE_SIZE, "%s%s%s", context->scope, isScoped ? ": " : "",
+                   name);
     context->reported = -1.0;
     pvtReportProgress(context, 0.0);
 }

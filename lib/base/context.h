@@ -29,6 +29,11 @@ pvtStatus pvtCheckMemory(pvtContext* context, size_t bytes, const char* purpose)
 /// Bytes that may still be allocated; SIZE_MAX without a limit.
 size_t pvtGetFreeBytes(const pvtContext* context);
 
+/// What the stages to come belong to, such as "LOD2", which goes in front of their names and
+/// of what is logged;
+/// "" for nothing. Of less than 24 bytes.
+void pvtSetStageScope(pvtContext* context, const char* format, ...)
+    __attribute__((format(printf, 2, 3)));
 /// Names the stage that pvtReportProgress speaks of.
 void pvtBeginStage(pvtContext* context, const char* name);
 /// On the calling thread of a stage only.

@@ -35,6 +35,8 @@ typedef struct pvtSaveJob {
 
 /// Each fills an open output; a failure to write is told when it is committed.
 pvtStatus pvtWriteGltf(const pvtSaveJob* job, bool binary, pvtOutput* output);
+pvtStatus pvtWriteLevels(pvtContext* context, const pvtLevelSet* set, bool binary,
+                         pvtOutput* output);
 pvtStatus pvtWriteObj(const pvtSaveJob* job, pvtOutput* output);
 pvtStatus pvtWritePly(const pvtSaveJob* job, pvtOutput* output);
 pvtStatus pvtWriteTscn(const pvtSaveJob* job, pvtOutput* output);

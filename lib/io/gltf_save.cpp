@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // glTF 2.0 through tinygltf's stream writer, which gets no file of its own: it would not notice a
 // full disk.
-#include "edge.hpp"
+#include "gltf_save.hpp"
 #include "placement.h"
-#include "tinygltf.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -231,23 +230,34 @@ class Saver
     std::unordered_map<const pvtMesh*, int> meshes_;
 };
 
-void WriteGltf(const pvtSaveJob& job, bool binary, pvtOutput* output)
+} // namespace
+
+namespace pvt
 {
-    const tinygltf::Model model = Saver(job).Build();
+
+tinygltf::Model MakeGltfModel(const pvtSaveJob& job)
+{
+    return Saver(job).Build();
+}
+
+std::string SerializeGltf(pvtContext* context, const tinygltf::Model& model, bool binary)
+{
     std::ostringstream stream;
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     tinygltf::TinyGLTF writer;
     if (!writer.WriteGltfSceneToStream(&model, stream, true, binary)) {
-        throw pvt::Failure{
-            pvtFail(job.context, PVT_OUTPUT_FAILED, "the glTF could not be put together")};
+        throw Failure{pvtFail(context, PVT_OUTPUT_FAILED, "the glTF could not be put together")};
     }
-    const std::string bytes = stream.str();
-    pvtOutput_Write(output, bytes.data(), bytes.size());
+    return stream.str();
 }
 
-} // namespace
+} // namespace pvt
 
 pvtStatus pvtWriteGltf(const pvtSaveJob* job, bool binary, pvtOutput* output)
 {
-    return pvt::Guard(job->context, "the glTF", [&] { WriteGltf(*job, binary, output); });
+    return pvt::Guard(job->context, "the glTF", [&] {
+        const std::string bytes =
+            pvt::SerializeGltf(job->context, pvt::MakeGltfModel(*job), binary);
+        pvtOutput_Write(output, bytes.data(), bytes.size());
+    });
 }

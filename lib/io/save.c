@@ -146,3 +146,40 @@ pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem*
     pvtPlacedItems_Free(context, &placed);
     return status;
 }
+
+bool pvtCanSaveLevels(const char* path)
+{
+    const Format format = GetFormat(path);
+    return format == FORMAT_GLB || format == FORMAT_GLTF;
+}
+
+static pvtStatus CheckLevels(pvtContext* context, const pvtLevelSet* set)
+{
+    const pvtSaveJob levels = {context, set->levels, set->levelCount};
+    const pvtSaveJob others = {context, set->others, set->otherCount};
+    const pvtStatus status = CheckItems(&levels);
+    return status == PVT_OK && set->otherCount > 0 ? CheckItems(&others) : status;
+}
+
+pvtStatus pvtSaveLevels(pvtContext* context, const char* path, const pvtLevelSet* set)
+{
+    if (!pvtCanSaveLevels(path)) {
+        return pvtFail(context, PVT_UNSUPPORTED,
+                       "%s: levels can be written only to names that end in .glb or .gltf", path);
+    }
+    pvtStatus status = CheckLevels(context, set);
+    if (status != PVT_OK) {
+        return status;
+    }
+    pvtOutput* output = NULL;
+    status = pvtOpenOutput(context, path, &output);
+    if (status != PVT_OK) {
+        return status;
+    }
+    status = pvtWriteLevels(context, set, GetFormat(path) == FORMAT_GLB, output);
+    if (status != PVT_OK) {
+        pvtDiscardOutput(output);
+        return status;
+    }
+    return pvtCommitOutput(output);
+}

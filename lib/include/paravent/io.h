@@ -88,6 +88,23 @@ PVT_API pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtS
 /// Whether pvtSaveModel knows the path's ending: to be asked before the long work.
 PVT_API bool pvtCanSaveModel(const char* path);
 
+/// Levels of detail of one thing, from fine to coarse, and what stands beside them.
+typedef struct pvtLevelSet {
+    const pvtSaveItem* levels;
+    size_t levelCount; ///< at least 1
+    /// One a level: the screen coverage down to which it is shown, as MSFT_screencoverage has it.
+    /// The first level's node names the others by the extension MSFT_lod; they are in no scene.
+    /// Null: all levels are plain nodes of the scene.
+    const double* coverages;
+    const pvtSaveItem* others; ///< further nodes, in front of the levels
+    size_t otherCount;
+} pvtLevelSet;
+
+/// Writes .glb or .gltf, which alone have levels; else as pvtSaveModel does.
+PVT_API pvtStatus pvtSaveLevels(pvtContext* context, const char* path, const pvtLevelSet* set);
+/// Whether pvtSaveLevels knows the path's ending.
+PVT_API bool pvtCanSaveLevels(const char* path);
+
 /// PNG, by OpenImageIO, which is opened at the first call; PVT_UNSUPPORTED without it. Its module
 /// paravent_image.so is looked for in the same places as paravent-import.
 PVT_API pvtStatus pvtSaveImage(pvtContext* context, const char* path, const pvtImage* image);

@@ -6,6 +6,7 @@
 #include <paravent/base.h>
 #include <paravent/evaluate.h>
 #include <paravent/image.h>
+#include <paravent/ladder.h>
 #include <paravent/mesh.h>
 #include <paravent/occluder.h>
 #include <paravent/occlusion.h>
