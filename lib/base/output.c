@@ -67,6 +67,7 @@ static bool OpenTemporary(pvtOutput* output)
     return output->file != NULL;
 }
 
+// False with an error, or with none when the context has said that memory was short.
 static bool OpenFile(pvtOutput* output, const char* path)
 {
     struct stat info;
@@ -86,11 +87,7 @@ static bool OpenFile(pvtOutput* output, const char* path)
         return false;
     }
     output->temporary = pvtAllocate(output->context, strlen(path) + TEMPORARY_SUFFIX, 1);
-    if (output->temporary == NULL) {
-        output->error = ENOMEM;
-        return false;
-    }
-    return OpenTemporary(output);
+    return output->temporary != NULL && OpenTemporary(output);
 }
 
 pvtStatus pvtOpenOutput(pvtContext* context, const char* path, pvtOutput** output)
@@ -116,8 +113,9 @@ pvtStatus pvtOpenOutput(pvtContext* context, const char* path, pvtOutput** outpu
     if (!OpenFile(made, path)) {
         const int error = made->error;
         pvtDiscardOutput(made);
-        return pvtFail(context, PVT_OUTPUT_FAILED, "%s cannot be written: %s", path,
-                       strerror(error));
+        return error == 0 ? pvtContext_GetStatus(context)
+                          : pvtFail(context, PVT_OUTPUT_FAILED, "%s cannot be written: %s", path,
+                                    strerror(error));
     }
     *output = made;
     return PVT_OK;
