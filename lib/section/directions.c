@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Which directions to slice across. A few special ones matter most (method.md, section 4): those of
-// walls and roofs, and the grid's own. The others fill the space between them: they start on a
-// golden spiral (Vogel, A better way to construct the sunflower head, 1979) and push each other
-// away, like charges on a sphere that come in opposite pairs, with the special ones held fast.
+// Which directions to slice across. A few special ones matter most: those of walls and roofs,
+// and the grid's own. The others fill the space between them: they start on a golden spiral (Vogel,
+// A better way to construct the sunflower head, 1979) and push each other away, like charges on a
+// sphere that come in opposite pairs, with the special ones held fast.
 #include "directions.h"
 
 #include "base/context.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bitmaps of a grid on a plane, 64 cells at a time. See method.md, section 4, and
+// Bitmaps of a grid on a plane, 64 cells at a time. See also
 // Silvennoinen, Saransaari, Laine, Lehtinen: Occluder Simplification Using Planar Sections, 2014,
 // section 4.2, which slices with the stencil buffer of a GPU instead.
 //
