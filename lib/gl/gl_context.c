@@ -203,3 +203,17 @@ pvtStatus pvtCheckGl(pvtContext* context, pvtGl* gl, const char* task)
     return pvtFail(context, PVT_UNSUPPORTED, "%s: cannot %s (GL error 0x%04x)", gl->name, task,
                    (unsigned)error);
 }
+
+pvtStatus pvtDrawGlTriangles(pvtContext* context, const pvtGl* gl, size_t count)
+{
+    for (size_t first = 0; first < count; first += PVT_GL_DRAW_TRIANGLES) {
+        if (pvtIsCancelled(context)) {
+            return pvtFailCancelled(context);
+        }
+        const size_t left = count - first;
+        const size_t some = left < PVT_GL_DRAW_TRIANGLES ? left : PVT_GL_DRAW_TRIANGLES;
+        gl->functions.DrawElements(GL_TRIANGLES, (GLsizei)(3 * some), GL_UNSIGNED_INT,
+                                   (const void*)(3 * first * sizeof(uint32_t)));
+    }
+    return PVT_OK;
+}

@@ -69,6 +69,12 @@ void pvtLeaveGl(pvtGl* gl);
 /// PVT_OUT_OF_MEMORY or PVT_UNSUPPORTED when GL has met an error since the last time.
 pvtStatus pvtCheckGl(pvtContext* context, pvtGl* gl, const char* task);
 
+/// Triangles a draw call: few enough to stop soon when cancelled.
+enum { PVT_GL_DRAW_TRIANGLES = 1 << 16 };
+
+/// Draws triangles of the vertex array that is bound, by its 32-bit indices.
+pvtStatus pvtDrawGlTriangles(pvtContext* context, const pvtGl* gl, size_t count);
+
 /// Compiles it at the first call.
 pvtStatus pvtGetGlProgram(pvtContext* context, pvtGl* gl, pvtGlProgram which, GLuint* program);
 

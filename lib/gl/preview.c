@@ -15,8 +15,6 @@ enum {
     LARGEST_TILE = 2048,
     // Pixels that are lit at a time, a few milliseconds without a graphics card.
     BAND_PIXELS = 1 << 15,
-    // Triangles a draw call: few enough to stop soon when cancelled.
-    DRAW_TRIANGLES = 1 << 16,
 };
 
 // Of the widest edges, in pixels of the picture, at the default tile size.
@@ -221,16 +219,7 @@ static pvtStatus DrawOriginal(const Preview* preview, const pvtPreviewCamera* ca
     BindTarget(f, &preview->originalTarget);
     UseProgram(f, preview->surfaceProgram, camera);
     f->BindVertexArray(preview->originalBuffer.vertexArray);
-    const size_t count = preview->original->triangleCount;
-    for (size_t first = 0; first < count; first += DRAW_TRIANGLES) {
-        if (pvtIsCancelled(preview->context)) {
-            return pvtFailCancelled(preview->context);
-        }
-        const size_t some = count - first < DRAW_TRIANGLES ? count - first : DRAW_TRIANGLES;
-        f->DrawElements(GL_TRIANGLES, (GLsizei)(3 * some), GL_UNSIGNED_INT,
-                        (const void*)(3 * first * sizeof(uint32_t)));
-    }
-    return PVT_OK;
+    return pvtDrawGlTriangles(preview->context, preview->gl, preview->original->triangleCount);
 }
 
 static pvtStatus DrawOccluder(const Preview* preview, const pvtPreviewCamera* camera)
@@ -239,14 +228,13 @@ static pvtStatus DrawOccluder(const Preview* preview, const pvtPreviewCamera* ca
     BindTarget(f, &preview->occluderTarget);
     UseProgram(f, preview->occluderProgram, camera);
     f->BindVertexArray(preview->occluderBuffer.vertexArray);
-    const size_t count = preview->paint.vertexCount;
-    for (size_t first = 0; first < count; first += 3 * (size_t)DRAW_TRIANGLES) {
+    const size_t count = preview->paint.vertexCount, most = 3 * (size_t)PVT_GL_DRAW_TRIANGLES;
+    for (size_t first = 0; first < count; first += most) {
         if (pvtIsCancelled(preview->context)) {
             return pvtFailCancelled(preview->context);
         }
         const size_t left = count - first;
-        f->DrawArrays(GL_TRIANGLES, (GLint)first,
-                      (GLsizei)(left < 3 * DRAW_TRIANGLES ? left : 3 * DRAW_TRIANGLES));
+        f->DrawArrays(GL_TRIANGLES, (GLint)first, (GLsizei)(left < most ? left : most));
     }
     return PVT_OK;
 }

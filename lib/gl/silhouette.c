@@ -7,9 +7,6 @@
 
 #include <assert.h>
 
-// Triangles a draw call: few enough to stop soon when cancelled.
-enum { DRAW_TRIANGLES = 1 << 16 };
-
 typedef struct Point {
     float x, y;
 } Point;
@@ -33,20 +30,6 @@ static void ProjectPoints(const pvtMesh* mesh, const pvtView* view, const double
     }
 }
 
-static pvtStatus DrawTriangles(pvtContext* context, const pvtGlFunctions* f, size_t count)
-{
-    for (size_t first = 0; first < count; first += DRAW_TRIANGLES) {
-        if (pvtIsCancelled(context)) {
-            return pvtFailCancelled(context);
-        }
-        const size_t left = count - first;
-        const size_t some = left < DRAW_TRIANGLES ? left : DRAW_TRIANGLES;
-        f->DrawElements(GL_TRIANGLES, (GLsizei)(3 * some), GL_UNSIGNED_INT,
-                        (const void*)(3 * first * sizeof(uint32_t)));
-    }
-    return PVT_OK;
-}
-
 static pvtStatus DrawMesh(pvtContext* context, pvtGl* gl, const pvtMesh* mesh, const Point* points)
 {
     const pvtGlFunctions* f = &gl->functions;
@@ -65,7 +48,7 @@ static pvtStatus DrawMesh(pvtContext* context, pvtGl* gl, const pvtMesh* mesh, c
                   GL_STREAM_DRAW);
     pvtStatus status = pvtCheckGl(context, gl, "upload a mesh");
     if (status == PVT_OK) {
-        status = DrawTriangles(context, f, mesh->triangleCount);
+        status = pvtDrawGlTriangles(context, gl, mesh->triangleCount);
     }
     f->DeleteVertexArrays(1, &vertexArray);
     f->DeleteBuffers(2, buffers);
