@@ -5,7 +5,6 @@
 // over-occlusion are added, and so is what the numbers would vary by under another seed. Nothing
 // here shares code with the builder of occluders but vectors, tasks and random numbers.
 #include "base/context.h"
-#include "base/vector.h"
 #include "view.h"
 
 #include <math.h>
@@ -48,11 +47,7 @@ static pvtStatus CheckOptions(pvtContext* context, const pvtEvaluateOptions* opt
         status = CheckRange(context, "pixels", options->pixels, (int[]){MIN_PIXELS, MAX_PIXELS});
     }
     for (int v = 0; status == PVT_OK && options->directions != NULL && v < options->views; ++v) {
-        const double length = pvtLength3(options->directions[v]);
-        if (!isfinite(length) || length <= 0.0) {
-            status = pvtFail(context, PVT_INVALID_ARGUMENT,
-                             "direction %d has no length, or one that is not finite", v);
-        }
+        status = pvtCheckDirection(context, (size_t)v, options->directions[v]);
     }
     return status;
 }

@@ -130,16 +130,11 @@ static bool IsRowSeenWithin(const ExcessRow* row, uint64_t limit2)
     return true;
 }
 
-static int64_t DivideDown(int64_t numerator, int64_t denominator)
-{
-    return numerator / denominator - (numerator % denominator < 0);
-}
-
 // The first column from which on `right` is nearer than `left`, a site to its left.
 static int64_t FindStart(const ExcessRow* row, int left, int right)
 {
     const int64_t a = GetDistance2(row, left, 0), b = GetDistance2(row, right, 0);
-    return DivideDown(b - a, 2 * ((int64_t)right - left)) + 1;
+    return pvtDivideDown(b - a, 2 * ((int64_t)right - left)) + 1;
 }
 
 static int BuildEnvelope(const ExcessRow* row, pvtExcessScratch* scratch)

@@ -44,6 +44,16 @@ typedef struct EdgeWalk {
     int64_t quotient, remainder, quotientStep, remainderStep, denominator;
 } EdgeWalk;
 
+pvtStatus pvtCheckDirection(pvtContext* context, size_t number, pvtVec3 direction)
+{
+    const double length = pvtLength3(direction);
+    if (isfinite(length) && length > 0.0) {
+        return PVT_OK;
+    }
+    return pvtFail(context, PVT_INVALID_ARGUMENT,
+                   "direction %zu has no length, or one that is not finite", number);
+}
+
 pvtScreen pvtMakeScreen(pvtVec3 direction)
 {
     const pvtVec3 along = pvtNormalize(direction);
@@ -201,12 +211,6 @@ static void FillPixels(const pvtRaster* raster, const pvtScreenPoint p[3], const
     }
 }
 
-static inline int64_t DivideDown(int64_t numerator, int64_t denominator)
-{
-    const int64_t quotient = numerator / denominator;
-    return quotient - (numerator % denominator < 0);
-}
-
 // For an edge that runs up (dy > 0) the quotient is the last pixel of row y inside it; for one that
 // runs down the first.
 static EdgeWalk StartWalk(pvtScreenPoint a, pvtScreenPoint b, int y)
@@ -219,9 +223,9 @@ static EdgeWalk StartWalk(pvtScreenPoint a, pvtScreenPoint b, int y)
     EdgeWalk walk = {.denominator = rise * SUBPIXELS};
     const int64_t numerator = dy > 0 ? start + inside : start - inside + walk.denominator - 1;
     const int64_t step = (dy > 0 ? dx : -dx) * SUBPIXELS;
-    walk.quotient = DivideDown(numerator, walk.denominator);
+    walk.quotient = pvtDivideDown(numerator, walk.denominator);
     walk.remainder = numerator - walk.quotient * walk.denominator;
-    walk.quotientStep = DivideDown(step, walk.denominator);
+    walk.quotientStep = pvtDivideDown(step, walk.denominator);
     walk.remainderStep = step - walk.quotientStep * walk.denominator;
     return walk;
 }

@@ -32,6 +32,15 @@ typedef struct pvtScreenBox {
     double lower[2], upper[2];
 } pvtScreenBox;
 
+/// The quotient, of which the divisor is positive, rounded down.
+static inline int64_t pvtDivideDown(int64_t numerator, int64_t denominator)
+{
+    return numerator / denominator - (numerator % denominator < 0);
+}
+
+/// PVT_INVALID_ARGUMENT, with the direction's number, unless its length is finite and above 0.
+pvtStatus pvtCheckDirection(pvtContext* context, size_t number, pvtVec3 direction);
+
 /// The view along `direction` (any length > 0) without roll: `up` is as near to +y as it can be,
 /// or to +z where the view looks along y within 1 part in 1000. Nothing else is filled.
 pvtScreen pvtMakeScreen(pvtVec3 direction);

@@ -3,7 +3,6 @@
 // so that what it counts is what they show.
 #include "base/bits.h"
 #include "base/context.h"
-#include "base/vector.h"
 #include "raster.h"
 
 #include <math.h>
@@ -182,14 +181,11 @@ static pvtStatus CheckOptions(pvtContext* context, const pvtSilhouetteOptions* o
                        "%d, the margin less than a quarter of them",
                        options->width, options->height, options->margin, MIN_SIDE, MAX_SIDE);
     }
-    for (size_t i = 0; i < options->count; ++i) {
-        const double length = pvtLength3(options->directions[i]);
-        if (!isfinite(length) || length <= 0.0) {
-            return pvtFail(context, PVT_INVALID_ARGUMENT,
-                           "direction %zu has no length, or one that is not finite", i);
-        }
+    pvtStatus status = PVT_OK;
+    for (size_t i = 0; status == PVT_OK && i < options->count; ++i) {
+        status = pvtCheckDirection(context, i, options->directions[i]);
     }
-    return PVT_OK;
+    return status;
 }
 
 static pvtStatus DrawSoups(pvtContext* context, const pvtSilhouetteOptions* options,
