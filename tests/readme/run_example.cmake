@@ -1,14 +1,7 @@
-# Takes the first C program out of the README, compiles it with warnings as errors, and runs it.
-file(READ ${README} TEXT)
-string(FIND "${TEXT}" "```c\n" BEGIN)
-if(BEGIN LESS 0)
-    message(FATAL_ERROR "no C program in ${README}")
-endif()
-math(EXPR BEGIN "${BEGIN} + 5")
-string(SUBSTRING "${TEXT}" ${BEGIN} -1 TEXT)
-string(FIND "${TEXT}" "```" END)
-string(SUBSTRING "${TEXT}" 0 ${END} TEXT)
-file(WRITE ${FOLDER}/example.c "${TEXT}")
+# Compiles the README's program of the core with warnings as errors, and runs it.
+set(PATTERN "pvtBuildOccluder")
+set(OUTPUT ${FOLDER}/example.c)
+include(${CMAKE_CURRENT_LIST_DIR}/extract.cmake)
 execute_process(
     COMMAND ${COMPILER} -std=c17 -Wall -Wextra -Werror -pedantic -I${INCLUDE} ${FOLDER}/example.c
             ${LIBRARY} -lm -pthread -o ${FOLDER}/example
