@@ -60,12 +60,12 @@ if [ "${#missing[@]}" -gt 0 ]; then
         apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
 fi
 
-# The Khronos glTF validator, as package-lock.json pins it.
+# The Khronos glTF validator and engines of the web, as package-lock.json pins them.
 node="$(cd "$(dirname "${BASH_SOURCE[0]}")/node" && pwd)"
 if [ "$purpose" = test ] && ! cmp -s "$node/package-lock.json" "$node/node_modules/.installed"; then
-    echo "setup: installing the glTF validator" >&2
+    echo "setup: installing the glTF validator, three.js and Babylon.js for the tests" >&2
     (cd "$node" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2) || {
-        echo "setup: npm cannot fetch the glTF validator; is there a network?" >&2
+        echo "setup: npm cannot fetch them; is there a network?" >&2
         exit 3
     }
     cp "$node/package-lock.json" "$node/node_modules/.installed"

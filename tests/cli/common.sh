@@ -1,6 +1,6 @@
 # Sourced by every test of the commands. Needs PARAVENT, the program, and PVT_MODELS_FOLDER, the
 # models that the project ships; PARAVENT_BENCH is the developers' program, and PVT_NODE_MODULES is
-# where npm put the glTF validator.
+# where npm put the glTF validator and engines of the web.
 set -uo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"

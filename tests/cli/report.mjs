@@ -1,80 +1,19 @@
 // node report.mjs CHROMIUM PAGE.html FOLDER: opens a report in a real headless browser without a
 // network. Checks that it asks for nothing, logs no error, shows both meshes, and that the toggles,
 // the choice of an occluder and a click on a view change the picture. Leaves pictures in FOLDER.
-import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { Browser, runInBrowser } from "./browser.mjs";
+import { writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 const [chromium, page, folder] = process.argv.slice(2);
 const url = pathToFileURL(resolve(page)).href;
-const profile = mkdtempSync(join(tmpdir(), "pvt-chromium-"));
-const browser = spawn(chromium, ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
-    "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--no-first-run",
-    "--disable-background-networking", "--remote-debugging-pipe", "--window-size=1240,1000",
-    `--user-data-dir=${profile}`, "about:blank"],
-{ stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
 
-// The DevTools protocol over a pipe: JSON texts that end in a zero byte.
-const waiting = new Map();
-const requests = [], errors = [];
-let loaded = () => {};
-let next = 1, rest = "";
-browser.stdio[4].setEncoding("utf8");
-browser.stdio[4].on("data", (data) => {
-    const texts = (rest + data).split("\0");
-    rest = texts.pop();
-    texts.forEach((text) => receive(JSON.parse(text)));
-});
-
-function receive(message) {
-    if (message.id !== undefined) {
-        const { resolve: done, reject } = waiting.get(message.id);
-        waiting.delete(message.id);
-        if (message.error) reject(new Error(message.error.message));
-        else done(message.result);
-    } else if (message.method === "Network.requestWillBeSent") {
-        requests.push(message.params.request.url);
-    } else if (message.method === "Page.loadEventFired") {
-        loaded();
-    } else if (message.method === "Runtime.exceptionThrown") {
-        errors.push(message.params.exceptionDetails.exception?.description ?? "an exception");
-    } else if (message.method === "Runtime.consoleAPICalled" &&
-               ["error", "warning", "assert"].includes(message.params.type)) {
-        errors.push(message.params.args.map((a) => a.value ?? a.description).join(" "));
-    } else if (message.method === "Log.entryAdded" && message.params.entry.level === "error") {
-        errors.push(message.params.entry.text);
-    }
-}
-
-function call(method, params = {}, sessionId = undefined) {
-    const id = next++;
-    browser.stdio[3].write(`${JSON.stringify({ id, method, params, sessionId })}\0`);
-    return new Promise((done, reject) => waiting.set(id, { resolve: done, reject }));
-}
-
-const problems = [];
-const expect = (what, holds) => { if (!holds) problems.push(what); };
-
-async function examine() {
-    const { targetInfos } = await call("Target.getTargets");
-    const { targetId } = targetInfos.find((target) => target.type === "page");
-    const { sessionId } = await call("Target.attachToTarget", { targetId, flatten: true });
-    const ask = (method, params) => call(method, params, sessionId);
-    for (const domain of ["Page", "Runtime", "Network", "Log"]) await ask(`${domain}.enable`);
-    await ask("Network.emulateNetworkConditions",
-        { offline: true, latency: 0, downloadThroughput: -1, uploadThroughput: -1 });
-    const done = new Promise((resolved) => { loaded = resolved; });
-    await ask("Page.navigate", { url });
-    await done;
-
-    const evaluate = async (expression) => {
-        const { result, exceptionDetails } =
-            await ask("Runtime.evaluate", { expression, awaitPromise: true, returnByValue: true });
-        if (exceptionDetails) throw new Error(exceptionDetails.exception.description);
-        return result.value;
-    };
+async function examine(browser, expect) {
+    const { requests, errors } = browser;
+    const ask = (method, params) => browser.ask(method, params);
+    const evaluate = (expression) => browser.evaluate(expression);
+    await browser.open(url);
     // How many pixels of the model's picture are grey (original), coloured (occluder), blue
     // (over-occlusion) and white, and a sum that changes when it does.
     const look = () => evaluate(`new Promise((done) => requestAnimationFrame(() => {
@@ -173,20 +112,4 @@ async function examine() {
     expect(`no error is logged but ${errors.join("; ")}`, errors.length === 0);
 }
 
-const timer = setTimeout(() => {
-    console.error("the browser does not answer");
-    browser.kill("SIGKILL");
-    process.exit(1);
-}, 100000);
-try {
-    await examine();
-} catch (error) {
-    problems.push(error.stack);
-}
-clearTimeout(timer);
-browser.kill("SIGKILL");
-browser.on("exit", () => {
-    rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
-    problems.forEach((problem) => console.error(`not so: ${problem}`));
-    process.exit(problems.length > 0 ? 1 : 0);
-});
+runInBrowser(new Browser(chromium), examine);
