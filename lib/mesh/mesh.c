@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Making, joining and measuring meshes.
-#include <paravent/mesh.h>
+#include "allocate.h"
 
 #include "base/context.h"
 #include "base/vector.h"
@@ -40,7 +40,7 @@ static pvtStatus CheckIndices(pvtContext* context, const uint32_t* indices, size
     return PVT_OK;
 }
 
-static pvtStatus CheckCounts(pvtContext* context, size_t positionCount, size_t triangleCount)
+pvtStatus pvtCheckMeshCounts(pvtContext* context, size_t positionCount, size_t triangleCount)
 {
     if (positionCount > UINT32_MAX || triangleCount > SIZE_MAX / (3 * sizeof(uint32_t))) {
         return pvtFail(context, PVT_LIMIT,
@@ -51,8 +51,8 @@ static pvtStatus CheckCounts(pvtContext* context, size_t positionCount, size_t t
     return PVT_OK;
 }
 
-static pvtStatus AllocateMesh(pvtContext* context, size_t positionCount, size_t triangleCount,
-                              pvtMesh* mesh)
+pvtStatus pvtReserveMesh(pvtContext* context, size_t positionCount, size_t triangleCount,
+                         pvtMesh* mesh)
 {
     *mesh = (pvtMesh){0};
     mesh->positions = pvtAllocate(context, positionCount, sizeof *mesh->positions);
@@ -63,16 +63,25 @@ static pvtStatus AllocateMesh(pvtContext* context, size_t positionCount, size_t 
         pvtMesh_Free(context, mesh);
         return pvtContext_GetStatus(context);
     }
-    mesh->positionCount = positionCount;
-    mesh->triangleCount = triangleCount;
     return PVT_OK;
+}
+
+static pvtStatus AllocateMesh(pvtContext* context, size_t positionCount, size_t triangleCount,
+                              pvtMesh* mesh)
+{
+    const pvtStatus status = pvtReserveMesh(context, positionCount, triangleCount, mesh);
+    if (status == PVT_OK) {
+        mesh->positionCount = positionCount;
+        mesh->triangleCount = triangleCount;
+    }
+    return status;
 }
 
 pvtStatus pvtCreateMesh(pvtContext* context, const pvtVec3* positions, size_t positionCount,
                         const uint32_t* indices, size_t triangleCount, pvtMesh* mesh)
 {
     *mesh = (pvtMesh){0};
-    pvtStatus status = CheckCounts(context, positionCount, triangleCount);
+    pvtStatus status = pvtCheckMeshCounts(context, positionCount, triangleCount);
     if (status == PVT_OK && indices == NULL && triangleCount > positionCount / 3) {
         status = pvtFail(context, PVT_INVALID_INPUT,
                          "%zu triangles without indices need %zu positions, there are %zu",
@@ -146,7 +155,7 @@ pvtStatus pvtMesh_Append(pvtContext* context, pvtMesh* mesh, const pvtMesh* othe
 {
     const size_t positionCount = mesh->positionCount + other->positionCount;
     const size_t triangleCount = mesh->triangleCount + other->triangleCount;
-    pvtStatus status = CheckCounts(context, positionCount, triangleCount);
+    pvtStatus status = pvtCheckMeshCounts(context, positionCount, triangleCount);
     if (status != PVT_OK) {
         return status;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Meshes put where their instances stand.
-#include <paravent/mesh.h>
+#include "allocate.h"
 
 #include "base/context.h"
 #include "transform.h"
@@ -16,15 +16,9 @@ static pvtStatus Reserve(pvtContext* context, const pvtPlacedMesh* placed, size_
         positionCount += placed[i].mesh->positionCount;
         triangleCount += placed[i].mesh->triangleCount;
     }
-    if (positionCount > UINT32_MAX) {
-        return pvtFail(context, PVT_LIMIT, "%zu positions are more than 32-bit indices reach",
-                       positionCount);
-    }
-    joined->positions = pvtAllocate(context, positionCount, sizeof *joined->positions);
-    joined->indices = joined->positions == NULL
-                          ? NULL
-                          : pvtAllocate(context, 3 * triangleCount, sizeof *joined->indices);
-    return joined->indices != NULL ? PVT_OK : pvtContext_GetStatus(context);
+    const pvtStatus status = pvtCheckMeshCounts(context, positionCount, triangleCount);
+    return status == PVT_OK ? pvtReserveMesh(context, positionCount, triangleCount, joined)
+                            : status;
 }
 
 static pvtStatus Add(pvtContext* context, const pvtPlacedMesh* placed, pvtMesh* joined)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Merges equal positions with a hash table of open addressing.
-#include <paravent/mesh.h>
+#include "allocate.h"
 
 #include "base/context.h"
 
@@ -85,12 +85,12 @@ pvtStatus pvtWeldMesh(pvtContext* context, const pvtMesh* mesh, pvtMesh* welded)
         table.mask = 2 * table.mask + 1;
     }
     table.slots = pvtAllocate(context, table.mask + 1, sizeof *table.slots);
-    welded->positions =
-        table.slots == NULL ? NULL : pvtAllocate(context, most, sizeof *welded->positions);
-    welded->indices =
-        welded->positions == NULL ? NULL : pvtAllocate(context, corners, sizeof *welded->indices);
-    pvtStatus status = welded->indices == NULL ? pvtContext_GetStatus(context)
-                                               : WeldIndices(context, mesh, &table, welded);
+    pvtStatus status = table.slots == NULL
+                           ? pvtContext_GetStatus(context)
+                           : pvtReserveMesh(context, most, mesh->triangleCount, welded);
+    if (status == PVT_OK) {
+        status = WeldIndices(context, mesh, &table, welded);
+    }
     pvtRelease(context, table.slots);
     if (status == PVT_OK) {
         status = ShrinkPositions(context, welded);
