@@ -6,6 +6,7 @@
 #include "builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace pvt
@@ -25,6 +26,14 @@ Transform Multiply(const Transform& a, const Transform& b)
     return product;
 }
 
+// What is 0 or ±1 but for rounding is that: a quarter turn that was written as a quaternion moves
+// nothing off its axis, and gives the same positions as the same turn written as a matrix.
+double Straighten(double x)
+{
+    const double whole = std::round(x);
+    return std::fabs(x - whole) < 1e-12 ? whole : x;
+}
+
 // Translation × rotation × scale. A quaternion that is not of unit length is taken for the rotation
 // that it is nearest to; one of no length for none.
 Transform Compose(const double t[3], const double q[4], const double s[3])
@@ -34,22 +43,16 @@ Transform Compose(const double t[3], const double q[4], const double s[3])
     const double xx = k * q[0] * q[0], yy = k * q[1] * q[1], zz = k * q[2] * q[2];
     const double xy = k * q[0] * q[1], xz = k * q[0] * q[2], yz = k * q[1] * q[2];
     const double wx = k * q[3] * q[0], wy = k * q[3] * q[1], wz = k * q[3] * q[2];
-    return {s[0] * (1 - yy - zz),
-            s[0] * (xy + wz),
-            s[0] * (xz - wy),
-            0,
-            s[1] * (xy - wz),
-            s[1] * (1 - xx - zz),
-            s[1] * (yz + wx),
-            0,
-            s[2] * (xz + wy),
-            s[2] * (yz - wx),
-            s[2] * (1 - xx - yy),
-            0,
-            t[0],
-            t[1],
-            t[2],
-            1};
+    const double columns[3][3] = {{1 - yy - zz, xy + wz, xz - wy},
+                                  {xy - wz, 1 - xx - zz, yz + wx},
+                                  {xz + wy, yz - wx, 1 - xx - yy}};
+    Transform transform = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, t[0], t[1], t[2], 1};
+    for (std::size_t column = 0; column < 3; ++column) {
+        for (std::size_t row = 0; row < 3; ++row) {
+            transform[4 * column + row] = s[column] * Straighten(columns[column][row]);
+        }
+    }
+    return transform;
 }
 
 Transform GetLocalTransform(const tinygltf::Node& node)

@@ -6,6 +6,10 @@
 // mean of all that: a wall's own normal counts more than the mouldings around it, so each cell
 // keeps the normal that most of its area shares (weighted majority vote; Boyer and Moore, "MJRTY",
 // 1991), and only curved surfaces, where there is none, fall back to the mean.
+//
+// The order of triangles and corners does not matter, so that a mesh which a compression has put in
+// another order gives the same directions to the last bit: sums are integers, a triangle's cross
+// product begins at its least corner, and the winner of the vote is counted anew.
 #include <paravent/mesh.h>
 
 #include "base/context.h"
@@ -19,17 +23,25 @@ enum { MIN_SIDE = 17, MAX_SIDE = 129, CANCEL_INTERVAL = 16384, SPARE_CLUSTERS = 
 // Normals closer than this [rad] count as one plane's.
 static const double sameNormal = 1e-3;
 
+// A sum of area vectors (normals times twice the area), in whole units.
+typedef struct Sum {
+    int64_t x, y, z;
+    int64_t length; // of the vectors' lengths
+} Sum;
+
 typedef struct Cell {
-    pvtVec3 sum; // of normals times area
-    double area;
-    pvtVec3 vote; // sum over the candidate of the vote, in the same way
+    Sum all;
+    Sum winner;        // of the triangles whose normal is the candidate
+    pvtVec3 candidate; // of the vote, of unit length
     double voteWeight;
 } Cell;
 
 typedef struct CellMap {
     Cell* cells; // 3 × side²
     int side;    // odd, so that an axis lies in the middle of a cell
-    double area;
+    int64_t length;
+    double scale; // of the mesh, so that its diagonal is 1
+    double unit;  // units of a sum in 1
 } CellMap;
 
 pvtFaceDirectionOptions pvtDefaultFaceDirectionOptions(void)
@@ -85,47 +97,85 @@ static Cell* FindCell(const CellMap* map, pvtVec3 unit, int axis)
                        (size_t)u];
 }
 
-static void AddNormal(Cell* cell, pvtVec3 unit, double area)
+static bool IsLess(pvtVec3 a, pvtVec3 b)
 {
-    const pvtVec3 weighted = pvtScale(unit, area);
-    cell->sum = pvtAdd(cell->sum, weighted);
-    cell->area += area;
-    const pvtVec3 candidate = pvtNormalize(cell->vote);
-    if (cell->voteWeight > 0.0 && pvtLength3(pvtSub(unit, candidate)) < sameNormal) {
-        cell->vote = pvtAdd(cell->vote, weighted);
-        cell->voteWeight += area;
-        return;
-    }
-    cell->voteWeight -= area;
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+// Twice the area times the normal. Scaled, so that tiny models do not underflow; from the least
+// corner on, so that rounding is the same whichever corner the file begins with.
+static pvtVec3 GetAreaVector(const pvtMesh* mesh, size_t triangle, double scale)
+{
+    const uint32_t* corner = &mesh->indices[3 * triangle];
+    const pvtVec3 p[3] = {mesh->positions[corner[0]], mesh->positions[corner[1]],
+                          mesh->positions[corner[2]]};
+    const int second = IsLess(p[1], p[0]) ? 1 : 0;
+    const int first = IsLess(p[2], p[second]) ? 2 : second;
+    const pvtVec3 u = pvtScale(pvtSub(p[(first + 1) % 3], p[first]), scale);
+    const pvtVec3 v = pvtScale(pvtSub(p[(first + 2) % 3], p[first]), scale);
+    return pvtCross(u, v);
+}
+
+static void AddToSum(Sum* sum, pvtVec3 vector, double length, double unit)
+{
+    sum->x += (int64_t)rint(vector.x * unit);
+    sum->y += (int64_t)rint(vector.y * unit);
+    sum->z += (int64_t)rint(vector.z * unit);
+    sum->length += (int64_t)rint(length * unit);
+}
+
+static pvtVec3 GetDirection(const Sum* sum)
+{
+    const pvtVec3 v = {(double)sum->x, (double)sum->y, (double)sum->z};
+    const double length = pvtLength3(v);
+    // Divided, so that what lies along an axis comes out as the axis.
+    return length > 0.0 ? (pvtVec3){v.x / length, v.y / length, v.z / length} : v;
+}
+
+static bool IsSameNormal(pvtVec3 a, pvtVec3 b)
+{
+    return pvtLength3(pvtSub(a, b)) < sameNormal;
+}
+
+static void Vote(Cell* cell, pvtVec3 normal, double weight)
+{
+    const bool agrees = IsSameNormal(normal, cell->candidate);
+    cell->voteWeight += agrees ? weight : -weight;
     if (cell->voteWeight < 0.0) {
-        cell->vote = weighted;
+        cell->candidate = normal;
         cell->voteWeight = -cell->voteWeight;
     }
 }
 
-// Twice the area times the normal, in units of `scale`, so that tiny models do not underflow.
-static pvtVec3 GetAreaVector(const pvtMesh* mesh, size_t triangle, double scale)
+static void CountVote(Cell* cell, pvtVec3 normal, pvtVec3 vector, double length, double unit)
 {
-    const uint32_t* corner = &mesh->indices[3 * triangle];
-    const pvtVec3 a = mesh->positions[corner[0]];
-    const pvtVec3 u = pvtScale(pvtSub(mesh->positions[corner[1]], a), scale);
-    const pvtVec3 v = pvtScale(pvtSub(mesh->positions[corner[2]], a), scale);
-    return pvtCross(u, v);
+    if (IsSameNormal(normal, cell->candidate)) {
+        AddToSum(&cell->winner, vector, length, unit);
+    }
 }
 
-static pvtStatus CollectNormals(pvtContext* context, const pvtMesh* mesh, double scale,
+// A walk over all triangles: the first one votes, the second one counts who voted for the winner.
+static pvtStatus CollectNormals(pvtContext* context, const pvtMesh* mesh, bool isCount,
                                 CellMap* map)
 {
     for (size_t i = 0; i < mesh->triangleCount; ++i) {
         if (i % CANCEL_INTERVAL == 0 && pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
-        pvtVec3 normal = GetAreaVector(mesh, i, scale);
-        const double length = pvtLength3(normal);
-        if (length > 0.0 && isfinite(length)) {
-            const int axis = OrientToCell(&normal);
-            AddNormal(FindCell(map, normal, axis), pvtScale(normal, 1.0 / length), 0.5 * length);
-            map->area += 0.5 * length;
+        pvtVec3 vector = GetAreaVector(mesh, i, map->scale);
+        const double length = pvtLength3(vector);
+        if (!(length > 0.0 && length < 1.5)) { // corners that are not finite, too
+            continue;
+        }
+        const int axis = OrientToCell(&vector);
+        Cell* cell = FindCell(map, vector, axis);
+        const pvtVec3 normal = pvtScale(vector, 1.0 / length);
+        if (isCount) {
+            CountVote(cell, normal, vector, length, map->unit);
+        } else {
+            Vote(cell, normal, length);
+            AddToSum(&cell->all, vector, length, map->unit);
+            map->length += (int64_t)rint(length * map->unit);
         }
     }
     return PVT_OK;
@@ -136,7 +186,7 @@ static Cell* FindHeaviestCell(const CellMap* map, size_t count)
     Cell* heaviest = NULL;
     for (size_t i = 0; i < count; ++i) {
         Cell* cell = &map->cells[i];
-        if (cell->area > 0.0 && (heaviest == NULL || cell->area > heaviest->area)) {
+        if (cell->all.length > 0 && (heaviest == NULL || cell->all.length > heaviest->all.length)) {
             heaviest = cell;
         }
     }
@@ -147,20 +197,23 @@ static Cell* FindHeaviestCell(const CellMap* map, size_t count)
 static pvtFaceDirection TakeCluster(const CellMap* map, size_t count, const Cell* seed,
                                     double cosine)
 {
-    const bool isFlat = seed->voteWeight > 0.25 * seed->area;
-    const pvtVec3 center = pvtNormalize(isFlat ? seed->vote : seed->sum);
-    pvtVec3 sum = {0.0, 0.0, 0.0};
-    double area = 0.0;
+    // The winner needs five eighths, a majority that no order of the votes can miss.
+    const bool isFlat = seed->winner.length > seed->all.length / 8 * 5;
+    const pvtVec3 center = GetDirection(isFlat ? &seed->winner : &seed->all);
+    Sum sum = {0};
     for (size_t i = 0; i < count; ++i) {
         Cell* cell = &map->cells[i];
-        const double dot = pvtDot(pvtNormalize(cell->sum), center);
-        if (cell->area > 0.0 && (fabs(dot) >= cosine || cell == seed)) {
-            sum = pvtAdd(sum, pvtScale(cell->sum, dot < 0.0 ? -1.0 : 1.0));
-            area += cell->area;
-            cell->area = 0.0;
+        const double dot = pvtDot(GetDirection(&cell->all), center);
+        if (cell->all.length > 0 && (fabs(dot) >= cosine || cell == seed)) {
+            const int64_t sign = dot < 0.0 ? -1 : 1;
+            sum.x += sign * cell->all.x;
+            sum.y += sign * cell->all.y;
+            sum.z += sign * cell->all.z;
+            sum.length += cell->all.length;
+            cell->all.length = 0;
         }
     }
-    pvtVec3 direction = isFlat ? center : pvtNormalize(sum);
+    pvtVec3 direction = isFlat ? center : GetDirection(&sum);
     const double first = direction.x != 0.0   ? direction.x
                          : direction.y != 0.0 ? direction.y
                                               : direction.z;
@@ -169,7 +222,7 @@ static pvtFaceDirection TakeCluster(const CellMap* map, size_t count, const Cell
     }
     // No coordinate is −0: outputs are compared byte by byte.
     direction = pvtAdd(direction, (pvtVec3){0.0, 0.0, 0.0});
-    return (pvtFaceDirection){direction, area};
+    return (pvtFaceDirection){direction, (double)sum.length};
 }
 
 // Falling area; equal areas by direction, so that the order does not hang on qsort.
@@ -189,10 +242,11 @@ static int CompareByArea(const void* left, const void* right)
     return 0;
 }
 
-static void TakeClusters(const pvtFaceDirectionOptions* options, CellMap* map, double unitArea,
+static void TakeClusters(const pvtFaceDirectionOptions* options, const CellMap* map,
                          pvtFaceDirectionSet* set)
 {
     const size_t count = 3 * (size_t)map->side * (size_t)map->side;
+    const double areaOfUnit = 0.5 / map->unit / map->scale / map->scale;
     const size_t most = 2 * (size_t)options->maxCount + SPARE_CLUSTERS;
     size_t taken = 0;
     const Cell* seed = FindHeaviestCell(map, count);
@@ -202,8 +256,8 @@ static void TakeClusters(const pvtFaceDirectionOptions* options, CellMap* map, d
     }
     qsort(set->directions, taken, sizeof *set->directions, CompareByArea);
     while (set->count < taken && set->count < (size_t)options->maxCount &&
-           set->directions[set->count].area >= options->minFraction * map->area) {
-        set->directions[set->count++].area *= unitArea;
+           set->directions[set->count].area >= options->minFraction * (double)map->length) {
+        set->directions[set->count++].area *= areaOfUnit;
     }
 }
 
@@ -217,19 +271,27 @@ pvtStatus pvtFindFaceDirections(pvtContext* context, const pvtFaceDirectionOptio
     }
     const pvtBox3 box = pvtMesh_GetBounds(mesh);
     const double size = pvtLength3(pvtSub(box.upper, box.lower));
-    const double unit = mesh->triangleCount > 0 && size > 0.0 && isfinite(size) ? size : 1.0;
+    const bool isSized = mesh->triangleCount > 0 && size > 0.0 && isfinite(size);
     // About six cells across the angle.
     const double fine = 2.0 * 3.0 / options->angle;
-    CellMap map = {.side = fine > MAX_SIDE ? MAX_SIDE : fine < MIN_SIDE ? MIN_SIDE : (int)fine | 1};
+    // No cross product is longer than the diagonal's square, which is 1, so that no sum overflows.
+    CellMap map = {.side = fine > MAX_SIDE   ? MAX_SIDE
+                           : fine < MIN_SIDE ? MIN_SIDE
+                                             : (int)fine | 1,
+                   .scale = isSized ? 1.0 / size : 1.0,
+                   .unit = 0x1p62 / (double)(mesh->triangleCount + 2)};
     map.cells = pvtAllocate(context, 3 * (size_t)map.side * (size_t)map.side, sizeof *map.cells);
     set->directions = map.cells == NULL
                           ? NULL
                           : pvtAllocate(context, 2 * (size_t)options->maxCount + SPARE_CLUSTERS,
                                         sizeof *set->directions);
     status = set->directions == NULL ? pvtContext_GetStatus(context)
-                                     : CollectNormals(context, mesh, 1.0 / unit, &map);
+                                     : CollectNormals(context, mesh, false, &map);
     if (status == PVT_OK) {
-        TakeClusters(options, &map, unit * unit, set);
+        status = CollectNormals(context, mesh, true, &map);
+    }
+    if (status == PVT_OK) {
+        TakeClusters(options, &map, set);
     } else {
         pvtFaceDirectionSet_Free(context, set);
     }

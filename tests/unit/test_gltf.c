@@ -59,6 +59,23 @@ static void transforms_compose_from_the_root_down(void** state)
     CHECK_NEAR(GetSignedVolume(&f->model.mesh), 24.0, 1e-12);
 }
 
+static void quarter_turns_by_quaternion_and_by_matrix_are_the_same(void** state)
+{
+    Fixture* f = *state;
+    pvtVec3 positions[8];
+    CHECK_OK(f->context, LoadCube(f, CUBE_NODES("{'matrix':[1,0,0,0,0,0,-1,0,0,1,0,0,0,0,0,1],"
+                                                "'mesh':0}")));
+    assert_int_equal(f->model.mesh.positionCount, 8);
+    memcpy(positions, f->model.mesh.positions, sizeof positions);
+    CHECK_OK(f->context, LoadCube(f, CUBE_NODES("{'rotation':[-0.7071067811865475,0,0,"
+                                                "0.7071067811865476],'mesh':0}")));
+    for (int i = 0; i < 8; ++i) {
+        assert_true(positions[i].x == f->model.mesh.positions[i].x);
+        assert_true(positions[i].y == f->model.mesh.positions[i].y);
+        assert_true(positions[i].z == f->model.mesh.positions[i].z);
+    }
+}
+
 static void mirrored_nodes_stay_wound_outwards(void** state)
 {
     Fixture* f = *state;
@@ -548,6 +565,7 @@ int main(void)
         TEST(a_glb_gives_the_cube_that_it_holds),
         TEST(contents_decide_whether_it_is_glb_or_json),
         TEST(transforms_compose_from_the_root_down),
+        TEST(quarter_turns_by_quaternion_and_by_matrix_are_the_same),
         TEST(mirrored_nodes_stay_wound_outwards),
         TEST(instances_of_a_mesh_share_its_number),
         TEST(a_chain_of_3000_nodes_is_walked),

@@ -221,6 +221,64 @@ static void directions_of_a_curved_surface_are_spread_and_bounded(void** state)
     DestroyTestContext(context);
 }
 
+// A bumpy strip: curved parts, flat ones, and triangles of every size.
+static void MakeHills(pvtContext* context, pvtMesh* mesh)
+{
+    enum { SIDE = 24 };
+    pvtVec3 positions[(SIDE + 1) * (SIDE + 1)];
+    uint32_t indices[6 * SIDE * SIDE];
+    for (int j = 0; j <= SIDE; ++j) {
+        for (int i = 0; i <= SIDE; ++i) {
+            const double y = i < SIDE / 2 ? 0.3 * i : sin(0.7 * i) * cos(0.9 * j);
+            positions[j * (SIDE + 1) + i] = (pvtVec3){0.1 * i * i, y, 0.37 * j};
+        }
+    }
+    for (uint32_t k = 0; k < SIDE * SIDE; ++k) {
+        const uint32_t a = k / SIDE * (SIDE + 1) + k % SIDE;
+        const uint32_t quad[6] = {a, a + 1, a + SIDE + 2, a, a + SIDE + 2, a + SIDE + 1};
+        memcpy(&indices[6 * k], quad, sizeof quad);
+    }
+    CHECK_OK(context, pvtCreateMesh(context, positions, (SIDE + 1) * (SIDE + 1), indices,
+                                    2 * SIDE * SIDE, mesh));
+}
+
+// Compressions store triangles in any order, and begin each at any of its corners.
+static void face_directions_do_not_hang_on_the_order_of_triangles_or_corners(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    const pvtFaceDirectionOptions options = pvtDefaultFaceDirectionOptions();
+    pvtMesh mesh;
+    pvtFaceDirectionSet before, after;
+    MakeHills(context, &mesh);
+    CHECK_OK(context, pvtFindFaceDirections(context, &options, &mesh, &before));
+    assert_true(before.count > 3);
+    const size_t count = mesh.triangleCount;
+    for (size_t round = 0; round < 3; ++round) {
+        for (size_t t = 0; t < count; ++t) {
+            uint32_t* a = &mesh.indices[3 * t];
+            uint32_t* b = &mesh.indices[3 * ((t * 7919 + round * 31) % count)];
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t corner = a[k];
+                a[k] = b[k];
+                b[k] = corner;
+            }
+            const uint32_t first = a[0];
+            a[0] = a[1];
+            a[1] = a[2];
+            a[2] = first;
+        }
+        CHECK_OK(context, pvtFindFaceDirections(context, &options, &mesh, &after));
+        assert_int_equal(after.count, before.count);
+        assert_memory_equal(after.directions, before.directions,
+                            before.count * sizeof *before.directions);
+        pvtFaceDirectionSet_Free(context, &after);
+    }
+    pvtFaceDirectionSet_Free(context, &before);
+    pvtMesh_Free(context, &mesh);
+    DestroyTestContext(context);
+}
+
 static pvtStatus WorkOnMeshes(pvtContext* context, const void* data)
 {
     (void)data;
@@ -265,6 +323,7 @@ int main(void)
         cmocka_unit_test(a_box_faces_its_three_axes_with_the_area_of_both_sides),
         cmocka_unit_test(a_wall_keeps_its_own_direction_beside_slanted_trim),
         cmocka_unit_test(directions_of_a_curved_surface_are_spread_and_bounded),
+        cmocka_unit_test(face_directions_do_not_hang_on_the_order_of_triangles_or_corners),
         cmocka_unit_test(failing_allocations_leave_meshes_as_they_were),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
