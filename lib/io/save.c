@@ -106,6 +106,12 @@ static pvtStatus Write(const pvtSaveJob* job, Format format, pvtOutput* output)
     return pvtWritePly(job, output);
 }
 
+// Whether nodes of the format have transforms, so that they can share a mesh.
+static bool CanPlace(Format format)
+{
+    return format == FORMAT_GLB || format == FORMAT_GLTF || format == FORMAT_TSCN;
+}
+
 static pvtStatus WriteFile(const pvtSaveJob* job, Format format, const char* path)
 {
     pvtOutput* output = NULL;
@@ -134,7 +140,7 @@ pvtStatus pvtSaveModel(pvtContext* context, const char* path, const pvtSaveItem*
     pvtPlacedItems placed = {0};
     pvtStatus status = CheckItems(&job);
     if (status == PVT_OK) {
-        status = pvtPlaceItems(&job, format == FORMAT_GLB || format == FORMAT_GLTF, &placed);
+        status = pvtPlaceItems(&job, CanPlace(format), &placed);
     }
     if (status == PVT_OK) {
         const pvtSaveJob placedJob = {context, placed.items, placed.count};

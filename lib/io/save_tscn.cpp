@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A text scene of Godot 4: below a root an OccluderInstance3D an item, whose ArrayOccluder3D holds
-// the triangles. Axes are glTF's, and Godot's occlusion culling sees triangles from both sides, so
-// that they stay as they are. What Godot reads is specified by its loader (ResourceLoaderText and
-// VariantParser): it takes names as they stand and does not make them valid or unique.
+// the triangles; items of one mesh share it. Axes are glTF's, and Godot's occlusion culling sees
+// triangles from both sides, so that they stay as they are. What Godot reads is specified by its
+// loader (ResourceLoaderText and VariantParser): it takes names as they stand and does not make
+// them valid or unique.
 #include "writer.hpp"
 
 #include <cmath>
@@ -69,8 +70,9 @@ std::string Quote(const std::string& text)
     return quoted + '"';
 }
 
-// Without a point the loader takes a number for an integer, which has no negative zero.
-void WriteCoordinate(pvt::Writer& writer, double value)
+// Godot holds floats. Without a point the loader takes a number for an integer, which has no
+// negative zero.
+void WriteFloat(pvt::Writer& writer, double value)
 {
     const float narrow = static_cast<float>(value);
     if (narrow == 0.0F && std::signbit(narrow)) {
@@ -87,11 +89,11 @@ void WriteOccluder(const pvtMesh& mesh, std::size_t number, pvt::Writer& writer)
     for (std::size_t i = 0; i < mesh.positionCount; ++i) {
         const pvtVec3& p = mesh.positions[i];
         writer << (i == 0 ? "" : ", ");
-        WriteCoordinate(writer, p.x);
+        WriteFloat(writer, p.x);
         writer << ", ";
-        WriteCoordinate(writer, p.y);
+        WriteFloat(writer, p.y);
         writer << ", ";
-        WriteCoordinate(writer, p.z);
+        WriteFloat(writer, p.z);
         writer.FlushIfFull();
     }
     writer << ")\nindices = PackedInt32Array(";
@@ -126,12 +128,57 @@ void WriteMetadata(const pvtSaveJob& job, std::size_t index, pvt::Writer& writer
     writer << after;
 }
 
-void WriteNode(const pvtSaveJob& job, std::size_t index, const std::string& name,
-               pvt::Writer& writer)
+// Row after row, and then the origin.
+void WriteTransform(const double* transform, pvt::Writer& writer)
 {
-    writer << "\n[node name=" << Quote(name) << " type=\"OccluderInstance3D\" parent=\".\"]\n"
-           << "occluder = SubResource(\"ArrayOccluder3D_";
-    writer.Number(index + 1) << "\")\n";
+    writer << "transform = Transform3D(";
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) {
+            WriteFloat(writer, transform[4 * column + row]);
+            writer << ", ";
+        }
+    }
+    for (std::size_t row = 0; row < 3; ++row) {
+        WriteFloat(writer, transform[12 + row]);
+        writer << (row < 2 ? ", " : ")\n");
+    }
+}
+
+// The meshes of the items, numbered from 1 on as they first come.
+class Resources
+{
+  public:
+    explicit Resources(const pvtSaveJob& job)
+    {
+        for (std::size_t i = 0; i < job.count; ++i) {
+            if (numbers_.emplace(job.items[i].mesh, meshes_.size() + 1).second) {
+                meshes_.push_back(job.items[i].mesh);
+            }
+        }
+    }
+    const std::vector<const pvtMesh*>& Meshes() const
+    {
+        return meshes_;
+    }
+    std::size_t operator[](const pvtMesh* mesh) const
+    {
+        return numbers_.at(mesh);
+    }
+
+  private:
+    std::vector<const pvtMesh*> meshes_;
+    std::unordered_map<const pvtMesh*, std::size_t> numbers_;
+};
+
+void WriteNode(const pvtSaveJob& job, std::size_t index, const std::string& name,
+               std::size_t resource, pvt::Writer& writer)
+{
+    writer << "\n[node name=" << Quote(name) << " type=\"OccluderInstance3D\" parent=\".\"]\n";
+    if (job.items[index].transform != nullptr) {
+        WriteTransform(job.items[index].transform, writer);
+    }
+    writer << "occluder = SubResource(\"ArrayOccluder3D_";
+    writer.Number(resource) << "\")\n";
     WriteMetadata(job, index, writer);
     writer.FlushIfFull();
 }
@@ -139,16 +186,17 @@ void WriteNode(const pvtSaveJob& job, std::size_t index, const std::string& name
 void WriteTscn(const pvtSaveJob& job, pvtOutput* output)
 {
     const NodeNames names(job);
+    const Resources resources(job);
     pvt::Writer writer(job.context, output);
     writer << "[gd_scene load_steps=";
-    writer.Number(job.count + 1) << " format=3]\n";
-    for (std::size_t i = 0; i < job.count; ++i) {
-        WriteOccluder(*job.items[i].mesh, i + 1, writer);
+    writer.Number(resources.Meshes().size() + 1) << " format=3]\n";
+    for (const pvtMesh* mesh : resources.Meshes()) {
+        WriteOccluder(*mesh, resources[mesh], writer);
     }
     writer << "\n[node name=\"Occluders\" type=\"Node3D\"]\nmetadata/generator = "
            << Quote(std::string("paravent ") + pvtGetVersion()) << "\n";
     for (std::size_t i = 0; i < job.count; ++i) {
-        WriteNode(job, i, names[i], writer);
+        WriteNode(job, i, names[i], resources[job.items[i].mesh], writer);
     }
     writer.Flush();
 }

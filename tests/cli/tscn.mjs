@@ -1,10 +1,11 @@
-// node tscn.mjs SCENE.tscn MODEL.glb NAME…: reads a scene by the grammar of Godot's text resources
+// node tscn.mjs SCENE.tscn MODEL.glb [NAME…]: reads a scene by the grammar of Godot's text resources
 // with a parser of its own, and checks that it is one that Godot loads, whose occluders bear these
-// names and hold, bit for bit, the triangles and the notes of the model of the same run.
+// names, or the model's, and hold, bit for bit, the triangles and the notes of the model of the same
+// run, and stand where its nodes do.
 import { readFileSync } from "node:fs";
 import { strict as assert } from "node:assert";
 
-const [scenePath, modelPath, ...names] = process.argv.slice(2);
+const [scenePath, modelPath, ...given] = process.argv.slice(2);
 
 // Tokens as VariantParser::get_token knows them: a sign is only part of a number where a digit
 // follows it, and a number without a point or exponent is an integer.
@@ -107,12 +108,23 @@ function readModel(path) {
         return Array.from({ length: accessor.count * width }, (_, i) =>
             binary[method](start + size * i));
     };
-    return gltf.scenes[gltf.scene].nodes.map((node) => {
-        const { attributes, indices } = gltf.meshes[gltf.nodes[node].mesh].primitives[0];
-        assert(!gltf.nodes[node].children && !gltf.nodes[node].matrix, "baked, at the root");
-        return { positions: read(attributes.POSITION, 3), indices: read(indices, 1),
-            notes: gltf.nodes[node].extras?.paravent ?? {} };
+    return gltf.scenes[gltf.scene].nodes.map((index) => {
+        const node = gltf.nodes[index];
+        const { attributes, indices } = gltf.meshes[node.mesh].primitives[0];
+        assert(!node.children && !node.matrix);
+        return { name: node.name, mesh: node.mesh, positions: read(attributes.POSITION, 3),
+            indices: read(indices, 1), notes: node.extras?.paravent ?? {},
+            transform: makeTransform(node) };
     });
+}
+
+// Translation, rotation and scale as Godot writes them: three rows, then the origin.
+function makeTransform({ translation: t = [0, 0, 0], rotation = [0, 0, 0, 1], scale = [1, 1, 1] }) {
+    const [x, y, z, w] = rotation;
+    const rows = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]];
+    return [...rows.flatMap((row) => row.map((value, i) => value * scale[i])), ...t];
 }
 
 const sections = [];
@@ -131,6 +143,7 @@ assert.equal(root.fields.type, "Node3D");
 assert(!("parent" in root.fields), "the root has no parent");
 
 const model = readModel(modelPath);
+const names = given.length > 0 ? given : model.map(({ name }) => name);
 assert.equal(nodes.length, model.length);
 assert.deepEqual(nodes.map((node) => node.fields.name), names);
 assert.equal(new Set(names).size, names.length);
@@ -148,10 +161,17 @@ nodes.forEach((node, i) => {
     const { vertices, indices } = resource.properties;
     assert.equal(vertices.type, "PackedVector3Array");
     assert.equal(indices.type, "PackedInt32Array");
-    const { positions, indices: wanted, notes } = model[i];
+    const { positions, indices: wanted, notes, transform } = model[i];
+    const placed = node.properties.transform ??
+        { type: "Transform3D", items: makeTransform({}) };
+    assert.equal(placed.type, "Transform3D");
+    assert.equal(placed.items.length, 12);
+    const size = Math.max(...transform.map(Math.abs));
+    placed.items.forEach((value, k) => assert(Math.abs(value - transform[k]) <= 1e-6 * size));
     assert(positions.length > 0 && wanted.length > 0);
     assert.deepEqual(vertices.items.map(Math.fround), positions);
     assert.deepEqual(indices.items, wanted);
     assert.deepEqual(Object.fromEntries(node.properties["metadata/paravent"] ?? []), notes);
 });
 assert.equal(used.size, resources.length);
+assert.equal(used.size, new Set(model.map(({ mesh }) => mesh)).size);

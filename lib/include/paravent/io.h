@@ -74,9 +74,9 @@ typedef struct pvtSaveItem {
     const pvtMesh* mesh;
     const pvtExtra* extras;
     size_t extraCount;
-    /// 16 numbers, mesh to world, column after column; null: none. In glTF items with the same
-    /// `mesh` share it, and the node gets the transform; a transform with shear, and any in other
-    /// formats, moves a copy of the mesh.
+    /// 16 numbers, mesh to world, column after column; null: none. In glTF and in Godot's scenes
+    /// items with the same `mesh` share it, and the node gets the transform; a transform with
+    /// shear, and any in other formats, moves a copy of the mesh.
     const double* transform;
 } pvtSaveItem;
 
