@@ -5,12 +5,10 @@
 #include "mesh/transform.h"
 #include "text.h"
 
+#include <assert.h>
 #include <float.h>
 #include <stdio.h>
 #include <string.h>
-
-// Elements between two questions whether to stop.
-enum { POLL_MASK = 0xffff };
 
 void pvtMultiplyTransforms(const double a[16], const double b[16], double product[16])
 {
@@ -193,6 +191,9 @@ pvtStatus pvtModelBuilder_AddPart(pvtModelBuilder* builder, const char* name, si
     }
     const size_t first = model->mesh.triangleCount;
     size_t triangleCount = 0;
+    assert(mesh->positionCount <= builder->positionRoom - model->mesh.positionCount);
+    assert(mesh->triangleCount <= builder->triangleRoom - first);
+    assert(model->partCount < builder->partRoom);
     pvtStatus status = PlaceMesh(builder, transform, mesh, &triangleCount);
     if (status == PVT_OK && triangleCount > 0 && builder->keepsMeshes) {
         status = KeepLocal(builder, meshIndex, mesh);

@@ -71,7 +71,7 @@ static bool AreNodesSound(const Scene* scene)
     for (uint64_t i = 0; i < header->nodeCount; ++i) {
         const pvtImportNode* node = &scene->nodes[i];
         if ((i > 0 && node->parent >= i) || node->name >= header->nameBytes ||
-            node->firstUse != useCount ||
+            node->group >= header->nodeCount || node->firstUse != useCount ||
             !IsRange(node->firstUse, node->useCount, header->useCount)) {
             return false;
         }
@@ -212,13 +212,20 @@ static pvtStatus JoinMeshes(pvtContext* context, const Scene* scene, const pvtIm
     return PVT_OK;
 }
 
+// Whether a node becomes a part, and of what size: room is made for these and no others.
+static bool IsPart(const Scene* scene, const Placement* places, uint64_t index,
+                   uint64_t* positionCount, uint64_t* triangleCount)
+{
+    CountUses(scene, &scene->nodes[index], positionCount, triangleCount);
+    return places[index].wanted && *triangleCount > 0;
+}
+
 static pvtStatus ReserveModel(const Scene* scene, const Placement* places, pvtModelBuilder* builder)
 {
     uint64_t positionCount = 0, triangleCount = 0, partCount = 0;
     for (uint64_t i = 0; i < scene->header->nodeCount; ++i) {
         uint64_t positions = 0, triangles = 0;
-        CountUses(scene, &scene->nodes[i], &positions, &triangles);
-        if (places[i].wanted && triangles > 0) {
+        if (IsPart(scene, places, i, &positions, &triangles)) {
             positionCount += positions;
             triangleCount += triangles;
             ++partCount;
@@ -259,7 +266,8 @@ static pvtStatus AddNodes(const Scene* scene, const Placement* places, pvtModelB
 {
     pvtStatus status = ReserveModel(scene, places, builder);
     for (uint64_t i = 0; i < scene->header->nodeCount && status == PVT_OK; ++i) {
-        if (places[i].wanted && scene->nodes[i].useCount > 0) {
+        uint64_t positions = 0, triangles = 0;
+        if (IsPart(scene, places, i, &positions, &triangles)) {
             status = AddNode(scene, i, &places[i], builder);
         }
     }

@@ -72,7 +72,7 @@ static Result MakeResult(void)
     return result;
 }
 
-static pvtStatus LoadResult(Fixture* f, const Result* result, size_t size)
+static pvtStatus LoadResult(Fixture* f, const void* result, size_t size)
 {
     char commands[256];
     WriteBytes(InFolder(&f->folder, "result"), result, size);
@@ -96,14 +96,23 @@ static void a_result_that_lies_is_refused(void** state)
     Fixture* f = *state;
     // Each number that counts or points, far off and just off.
     static const size_t places[] = {
-        offsetof(Result, header.nodeCount),   offsetof(Result, header.meshCount),
-        offsetof(Result, header.useCount),    offsetof(Result, header.positionCount),
-        offsetof(Result, header.indexCount),  offsetof(Result, header.nameBytes),
-        offsetof(Result, nodes[0].firstUse),  offsetof(Result, nodes[1].firstUse),
-        offsetof(Result, nodes[1].useCount),  offsetof(Result, nodes[1].name),
-        offsetof(Result, nodes[1].parent),    offsetof(Result, mesh.firstPosition),
-        offsetof(Result, mesh.positionCount), offsetof(Result, mesh.firstIndex),
-        offsetof(Result, mesh.triangleCount), offsetof(Result, use),
+        offsetof(Result, header.nodeCount),
+        offsetof(Result, header.meshCount),
+        offsetof(Result, header.useCount),
+        offsetof(Result, header.positionCount),
+        offsetof(Result, header.indexCount),
+        offsetof(Result, header.nameBytes),
+        offsetof(Result, nodes[0].firstUse),
+        offsetof(Result, nodes[1].firstUse),
+        offsetof(Result, nodes[1].useCount),
+        offsetof(Result, nodes[1].name),
+        offsetof(Result, nodes[1].parent),
+        offsetof(Result, nodes[1].group),
+        offsetof(Result, mesh.firstPosition),
+        offsetof(Result, mesh.positionCount),
+        offsetof(Result, mesh.firstIndex),
+        offsetof(Result, mesh.triangleCount),
+        offsetof(Result, use),
     };
     static const uint64_t lies[] = {UINT64_MAX, UINT64_MAX / 3, (uint64_t)1 << 32, 17};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; ++i) {
@@ -126,6 +135,42 @@ static void a_result_that_lies_is_refused(void** state)
     result.positions[4] = NAN;
     assert_int_equal(LoadResult(f, &result, sizeof result), PVT_INVALID_INPUT);
     CheckMessage(f->context, "not a finite number");
+}
+
+// No room is made for positions without a triangle, so that none may be written.
+static void positions_without_a_triangle_are_left_out(void** state)
+{
+    enum { MANY = 1 << 19 };
+    typedef struct PointResult {
+        pvtImportHeader header;
+        pvtImportNode nodes[3];
+        pvtImportMesh meshes[2];
+        uint64_t uses[2];
+        float positions[3 * (3 + MANY)];
+        uint32_t indices[3];
+        char names[24];
+    } PointResult;
+    Fixture* f = *state;
+    const Result one = MakeResult();
+    PointResult* result = calloc(1, sizeof *result);
+    assert_non_null(result);
+    result->header = one.header;
+    result->header.nodeCount = 3;
+    result->header.meshCount = result->header.useCount = 2;
+    result->header.positionCount = 3 + MANY;
+    result->header.nameBytes = sizeof result->names;
+    memcpy(result->nodes, one.nodes, sizeof one.nodes);
+    result->nodes[2] = one.nodes[1];
+    result->nodes[2].firstUse = result->uses[1] = 1;
+    result->meshes[0] = one.mesh;
+    result->meshes[1] = (pvtImportMesh){.firstPosition = 3, .positionCount = MANY, .firstIndex = 3};
+    memcpy(result->positions, one.positions, sizeof one.positions);
+    memcpy(result->indices, one.indices, sizeof one.indices);
+    memcpy(result->names, one.names, sizeof one.names);
+    CHECK_OK(f->context, LoadResult(f, result, sizeof *result));
+    assert_int_equal(f->model.partCount, 1);
+    assert_int_equal(f->model.mesh.positionCount, 3);
+    free(result);
 }
 
 static void a_result_that_ends_early_is_refused(void** state)
@@ -214,6 +259,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         MODULE_TEST(a_sound_result_is_a_model),
         MODULE_TEST(a_result_that_lies_is_refused),
+        MODULE_TEST(positions_without_a_triangle_are_left_out),
         MODULE_TEST(a_result_that_ends_early_is_refused),
         MODULE_TEST(its_text_is_cleaned),
         MODULE_TEST(an_importer_that_never_ends_is_killed_when_cancelled),
