@@ -59,12 +59,21 @@ static void NameFiles(Session* session)
     }
 }
 
-static pvtStatus Load(pvtRun* run, Session* session)
+// Masked surfaces of the original are looked at as closely as half a pixel.
+static pvtLoadOptions GetLoadOptions(const pvtEvaluateLine* line, int file)
 {
-    const pvtLoadOptions options = pvtDefaultLoadOptions();
+    pvtLoadOptions options = pvtDefaultLoadOptions();
+    options.maskedResolution = 2 * line->pixels;
+    options.masked = file == 0 ? (pvtMasked)line->masked : PVT_MASKED_AUTO;
+    return options;
+}
+
+static pvtStatus Load(pvtRun* run, const pvtEvaluateLine* line, Session* session)
+{
     pvtStatus status = PVT_OK;
     for (int i = 0; i < session->fileCount && status == PVT_OK; ++i) {
         pvtModel model;
+        const pvtLoadOptions options = GetLoadOptions(line, i);
         status = pvtLoadModel(run->context, &options, session->paths[i], &model);
         if (status == PVT_OK) {
             // Only the triangles are kept.
@@ -195,7 +204,7 @@ static pvtStatus Evaluate(pvtRun* run, const pvtEvaluateLine* line, Session* ses
     NameFiles(session);
     pvtStatus status = CheckFiles(run, line, session);
     if (status == PVT_OK) {
-        status = Load(run, session);
+        status = Load(run, line, session);
     }
     if (status == PVT_OK && line->report != NULL) {
         status = pvtCheckReport(run, session->meshes, (size_t)session->fileCount);

@@ -10,6 +10,7 @@ enum { PVT_MOST_OCCLUDERS = 64 };
 typedef struct pvtEvaluateLine {
     pvtCommonOptions common;
     int views, quads, pixels;
+    int masked; ///< a pvtMasked
     uint64_t seed;
     const char *json, *csv, *silhouettes, *plot, *report; ///< null: not asked for
 } pvtEvaluateLine;

@@ -6,6 +6,16 @@
 
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtEvaluateLine, field)
 
+static const char* const maskedChoices[] = {"auto", "opaque", "skip", NULL};
+
+static const pvtOption inputTable[] = {
+    {.name = "masked",
+     FIELD(PVT_OPTION_CHOICE, masked),
+     .choices = maskedChoices,
+     .help = "ORIGINAL's materials with an alpha mask: opaque where their texture is (left out, "
+             "with a warning, where it cannot be read), opaque throughout, or left out"},
+};
+
 static const pvtOption samplingTable[] = {
     {.name = "views",
      FIELD(PVT_OPTION_INT, views),
@@ -64,6 +74,7 @@ static const pvtOption outputTable[] = {
 };
 
 static const pvtOptionGroup groups[] = {
+    {"Input", inputTable, sizeof inputTable / sizeof *inputTable},
     {"Sampling", samplingTable, sizeof samplingTable / sizeof *samplingTable},
     {"Output", outputTable, sizeof outputTable / sizeof *outputTable},
     {"General", pvtCommonOptionTable, PVT_COMMON_OPTION_COUNT},

@@ -143,7 +143,8 @@ const pvtOption pvtInputOptionTable[] = {
     {.name = "masked",
      FIELD(PVT_OPTION_CHOICE, masked),
      .choices = maskedChoices,
-     .help = "materials with an alpha mask: by their texture, as if opaque, or left out"},
+     .help = "materials with an alpha mask: opaque where their texture is (left out, with a "
+             "warning, where it cannot be read), opaque throughout, or left out"},
 };
 
 const pvtOption pvtSlicerOptionTable[] = {

@@ -41,10 +41,14 @@ static pvtStatus Prepare(pvtRun* run, const pvtGenerateOptions* options, const c
     return status == PVT_OK ? pvtOpenSetup(run, options, setup) : status;
 }
 
-static pvtStatus Load(pvtRun* run, const pvtLadderLine* options, pvtLadderResult* result)
+// As closely as the finest level needs it.
+static pvtStatus Load(pvtRun* run, const pvtLadderLine* options, const pvtLadderOptions* ladder,
+                      pvtLadderResult* result)
 {
     result->prepared = pvtGetClock();
-    const pvtStatus status = pvtLoadInput(run, &options->generate, result->input, &result->model);
+    pvtGenerateOptions generate = options->generate;
+    generate.error = options->errors != NULL ? ladder->errors[0] : 0.0;
+    const pvtStatus status = pvtLoadInput(run, &generate, result->input, &result->model);
     result->loaded = pvtGetClock();
     return status;
 }
@@ -96,7 +100,7 @@ static pvtStatus MakeLadder(pvtRun* run, const pvtLadderLine* options, pvtLadder
         ladder->build.tolerance = pvtDefaultBuildOptions().tolerance;
     }
     pvtImage sheet = {0};
-    pvtStatus status = Load(run, options, result);
+    pvtStatus status = Load(run, options, ladder, result);
     if (status == PVT_OK) {
         status = Build(run, ladder, result);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "setup.h"
 
+#include <math.h>
 #include <string.h>
 
 const char* pvtGetViewFile(const pvtGenerateOptions* options)
@@ -104,5 +105,8 @@ pvtStatus pvtLoadInput(pvtRun* run, const pvtGenerateOptions* options, const cha
     load.scene = options->scene;
     load.node = options->node;
     load.masked = (pvtMasked)options->masked;
+    // What a voxel cannot tell apart need not be cut out; √3 voxels are within the error.
+    load.maskedResolution = options->resolution;
+    load.maskedCell = options->error > 0.0 ? options->error / sqrt(3.0) : 0.0;
     return pvtLoadModel(run->context, &load, path, model);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Buffers and buffer views: glTF 2.0, sections 3.6.1 and 4.4.3; EXT_meshopt_compression.
 #include "gltf_document.hpp"
+#include "gltf_uri.hpp"
 
 #include <cstring>
 #include <meshoptimizer.h>
@@ -14,60 +15,6 @@ namespace
 // meshoptimizer's densest mode packs 64 bytes into one; what claims to do much better lies, and is
 // refused before memory is asked for.
 constexpr std::size_t kMaxCompression = 256;
-constexpr std::size_t kPollBytes = 1 << 20;
-
-int GetBase64Value(char c)
-{
-    if (c >= 'A' && c <= 'Z') {
-        return c - 'A';
-    }
-    if (c >= 'a' && c <= 'z') {
-        return c - 'a' + 26;
-    }
-    if (c >= '0' && c <= '9') {
-        return c - '0' + 52;
-    }
-    return c == '+' ? 62 : c == '/' ? 63 : -1;
-}
-
-int GetHexValue(char c)
-{
-    if (c >= '0' && c <= '9') {
-        return c - '0';
-    }
-    const char lower = static_cast<char>(c | 0x20);
-    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
-}
-
-bool IsDataUri(const std::string& uri)
-{
-    return uri.compare(0, 5, "data:") == 0;
-}
-
-// "http:", "file:" and their like: a letter, then letters, digits, plus, minus or dots.
-bool HasScheme(const std::string& uri)
-{
-    const std::size_t colon = uri.find_first_of(":/?#");
-    return colon != std::string::npos && colon > 0 && uri[colon] == ':';
-}
-
-// The path that a relative reference names (RFC 3986, section 2.1). A percent sign that begins no
-// two digits stays as it is.
-std::string DecodePercent(const std::string& uri)
-{
-    std::string path;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        const int high = uri[i] == '%' && i + 2 < uri.size() ? GetHexValue(uri[i + 1]) : -1;
-        const int low = high >= 0 ? GetHexValue(uri[i + 2]) : -1;
-        if (low >= 0) {
-            path.push_back(static_cast<char>(16 * high + low));
-            i += 2;
-        } else {
-            path.push_back(uri[i]);
-        }
-    }
-    return path;
-}
 
 std::size_t GetSize(const Json& object, const char* name)
 {
@@ -104,11 +51,9 @@ void GltfData::LoadBuffer(Json& buffer, std::size_t index, const GltfContainer& 
             return;
         }
         buffers_[index] = container.binary;
-    } else if (IsDataUri(uri->get_ref<const std::string&>())) {
-        DecodeDataUri(uri->get_ref<const std::string&>(), index);
-        *uri = "data:";
     } else {
-        ReadFile(uri->get<std::string>(), index);
+        LoadUri(uri->get_ref<const std::string&>(), index);
+        *uri = "data:";
     }
     CheckSize(index, GetSize(buffer, "byteLength"));
 }
@@ -123,62 +68,16 @@ void GltfData::CheckSize(std::size_t index, std::size_t claimed)
     bytes.size = claimed;
 }
 
-void GltfData::DecodeDataUri(const std::string& uri, std::size_t index)
+void GltfData::LoadUri(const std::string& uri, std::size_t index)
 {
-    static const char marker[] = ";base64,";
-    const std::size_t comma = uri.find(',');
-    const std::size_t begin = comma == std::string::npos ? 0 : comma + 1;
-    const std::size_t length = sizeof marker - 1;
-    if (begin < length || uri.compare(begin - length, length, marker) != 0) {
-        Refuse(job_, "buffers[%zu].uri is a data URI, but not in base64", index);
+    const std::string place = "buffers[" + std::to_string(index) + "]";
+    if (IsDataUri(uri)) {
+        decoded_.emplace_back(job_.context);
+        buffers_[index] = DecodeDataUri(job_, uri, place, decoded_.back());
+    } else {
+        files_.emplace_back(job_.context);
+        buffers_[index] = ReadUri(job_, uri, place, files_.back());
     }
-    std::size_t end = uri.size();
-    while (end > begin && uri[end - 1] == '=') {
-        --end;
-    }
-    Array<std::uint8_t> bytes(job_.context);
-    bytes.Resize((end - begin) / 4 * 3 + 3);
-    std::size_t size = 0;
-    std::uint32_t bits = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-        const int value = GetBase64Value(uri[i]);
-        if (value < 0) {
-            Refuse(job_, "buffers[%zu].uri: character %zu is not base64", index, i);
-        }
-        bits = bits << 6 | static_cast<std::uint32_t>(value);
-        // Four characters are three bytes: each but the first completes one.
-        const unsigned phase = static_cast<unsigned>((i - begin) & 3);
-        if (phase != 0) {
-            bytes[size++] = static_cast<std::uint8_t>(bits >> (6 - 2 * phase));
-        }
-        if (i % kPollBytes == 0) {
-            Poll(job_.context);
-        }
-    }
-    decoded_.push_back(std::move(bytes));
-    buffers_[index] = {decoded_.back().Data(), size};
-}
-
-void GltfData::ReadFile(const std::string& uri, std::size_t index)
-{
-    if (HasScheme(uri)) {
-        Refuse(job_, "buffers[%zu].uri \"%s\" is not a file beside the model; nothing is fetched",
-               index, Clean(uri).c_str());
-    }
-    const std::string name = DecodePercent(uri);
-    if (name.empty() || name.find('\0') != std::string::npos) {
-        Refuse(job_, "buffers[%zu].uri \"%s\" is not the name of a file", index,
-               Clean(uri).c_str());
-    }
-    OwnedSource file(job_.context);
-    const pvtStatus status = pvtReadSourceBeside(job_.context, job_.path, name.c_str(),
-                                                 job_.options->maxBytes, &file.source);
-    if (status != PVT_OK) {
-        const std::string reason = pvtContext_GetMessage(job_.context);
-        Refuse(job_, status, "buffers[%zu]: %s", index, reason.c_str());
-    }
-    buffers_[index] = {file.source.bytes, file.source.size};
-    files_.push_back(std::move(file));
 }
 
 // The bytes that buffer, byteOffset and byteLength of `range` name.

@@ -5,35 +5,13 @@
 
 #include "gltf_container.hpp"
 #include "gltf_schema.hpp"
+#include "gltf_uri.hpp"
 #include "tinygltf.hpp"
 
 #include <vector>
 
 namespace pvt
 {
-
-/// A file that was read; freed with its owner.
-class OwnedSource
-{
-  public:
-    explicit OwnedSource(pvtContext* context) : context_(context)
-    {
-    }
-    OwnedSource(OwnedSource&& other) noexcept
-        : context_(other.context_), source(std::exchange(other.source, pvtSource{}))
-    {
-    }
-    ~OwnedSource()
-    {
-        pvtSource_Free(context_, &source);
-    }
-
-  private:
-    pvtContext* context_;
-
-  public:
-    pvtSource source{};
-};
 
 /// Bytes of buffers and of buffer views. Nothing outside of a span can be asked for.
 class GltfData
@@ -49,8 +27,7 @@ class GltfData
 
   private:
     void LoadBuffer(Json& buffer, std::size_t index, const GltfContainer& container);
-    void DecodeDataUri(const std::string& uri, std::size_t index);
-    void ReadFile(const std::string& uri, std::size_t index);
+    void LoadUri(const std::string& uri, std::size_t index);
     void CheckSize(std::size_t index, std::size_t claimed);
     Span Slice(const Json& range, const std::string& place) const;
     Span Decompress(const Json& extension, std::size_t size, std::size_t view);

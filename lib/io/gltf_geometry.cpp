@@ -40,7 +40,7 @@ std::size_t CountTriangles(int mode, std::size_t indexCount)
 } // namespace
 
 GltfDecoder::GltfDecoder(const GltfFile& file, const GltfDraco& draco)
-    : file_(file), draco_(draco),
+    : file_(file), draco_(draco), masks_(file),
       quantized_(IsExtensionListed(file.document, "extensionsUsed", "KHR_mesh_quantization") ||
                  IsExtensionListed(file.document, "extensionsRequired", "KHR_mesh_quantization")),
       places_(file.job.context), origins_(file.job.context)
@@ -59,11 +59,26 @@ bool GltfDecoder::IsOmitted(const tinygltf::Primitive& primitive)
     }
     const auto& material = file_.model.materials[static_cast<std::size_t>(primitive.material)];
     const bool blended = material.alphaMode == "BLEND";
-    const bool masked =
-        material.alphaMode == "MASK" && file_.job.options->masked != PVT_MASKED_OPAQUE;
     blended_ += blended ? 1 : 0;
-    masked_ += masked ? 1 : 0;
-    return blended || masked;
+    return blended || (material.alphaMode == "MASK" && IsMaskOmitted(primitive));
+}
+
+bool GltfDecoder::IsMaskOmitted(const tinygltf::Primitive& primitive)
+{
+    if (file_.job.options->masked == PVT_MASKED_OPAQUE) {
+        return false;
+    }
+    bool omitted = true;
+    if (file_.job.options->masked == PVT_MASKED_AUTO) {
+        const GltfMask& mask = masks_.Find(static_cast<std::size_t>(primitive.material));
+        const bool mapped =
+            mask.map == nullptr || primitive.attributes.count(mask.TexCoordName()) != 0;
+        omitted = !mask.isKnown || !mapped;
+        unmapped_ += mask.isKnown && !mapped ? 1 : 0;
+    }
+    masked_ += omitted ? 1 : 0;
+    judged_ += omitted ? 0 : 1;
+    return omitted;
 }
 
 void GltfDecoder::CheckPositions(const GltfAccessor& positions, const std::string& place) const
@@ -138,6 +153,29 @@ GltfAccessor GltfDecoder::OpenIndices(std::size_t mesh, std::size_t primitive) c
     return GltfAccessor(file_, static_cast<std::size_t>(accessor));
 }
 
+// None for a primitive that is opaque as a whole.
+std::optional<MaskedPrimitive> GltfDecoder::FindMask(std::size_t mesh, std::size_t index)
+{
+    const tinygltf::Primitive& primitive = file_.model.meshes[mesh].primitives[index];
+    const std::size_t material = static_cast<std::size_t>(primitive.material);
+    if (file_.job.options->masked != PVT_MASKED_AUTO || primitive.material < 0 ||
+        file_.model.materials[material].alphaMode != "MASK") {
+        return {};
+    }
+    const GltfMask& mask = masks_.Find(material);
+    const std::string names[] = {mask.TexCoordName(), "COLOR_0"};
+    std::optional<GltfAccessor> found[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+        if (primitive.attributes.count(names[i]) != 0) {
+            found[i] = OpenAttribute(mesh, index, names[i].c_str());
+        }
+    }
+    const MaskedPrimitive::Source source = {GetGltfPlace(mesh, index),
+                                            OpenAttribute(mesh, index, "POSITION").Count(),
+                                            found[0], found[1]};
+    return MaskedPrimitive(file_.job, mask, source);
+}
+
 void GltfDecoder::DecodePrimitive(std::size_t meshIndex, std::size_t index, GltfMesh& mesh)
 {
     const tinygltf::Primitive& primitive = file_.model.meshes[meshIndex].primitives[index];
@@ -170,20 +208,34 @@ void GltfDecoder::DecodePrimitive(std::size_t meshIndex, std::size_t index, Gltf
         }
         return element;
     };
+    const std::optional<MaskedPrimitive> mask = FindMask(meshIndex, index);
+    GltfCard card{};
     const std::size_t count = CountTriangles(mode, indices.Count());
     for (std::size_t t = 0; t < count; ++t) {
         if (t % kPollTriangles == 0) {
             Poll(file_.job.context);
         }
         const Corners corners = GetCorners(mode, t);
-        const std::uint32_t a = getIndex(corners.a), b = getIndex(corners.b),
-                            c = getIndex(corners.c);
+        const std::uint32_t elements[] = {getIndex(corners.a), getIndex(corners.b),
+                                          getIndex(corners.c)};
         // Strips are stitched by triangles that repeat an index. They are never seen, but would
         // count as the segment between the pieces.
-        if (mode != TINYGLTF_MODE_TRIANGLES && (a == b || b == c || c == a)) {
+        if (mode != TINYGLTF_MODE_TRIANGLES &&
+            (elements[0] == elements[1] || elements[1] == elements[2] ||
+             elements[2] == elements[0])) {
             continue;
         }
-        for (const std::uint32_t element : {a, b, c}) {
+        if (mask) {
+            const MaskedPrimitive::Verdict verdict = mask->Judge(elements, card);
+            if (verdict == MaskedPrimitive::Verdict::Transparent) {
+                continue;
+            }
+            if (verdict == MaskedPrimitive::Verdict::Mixed) {
+                card.triangle = mesh.indices.Size() / 3;
+                mesh.cards.Push(card);
+            }
+        }
+        for (const std::uint32_t element : elements) {
             mesh.indices.Push(AddPosition(source, element, mesh));
         }
     }
@@ -206,6 +258,21 @@ GltfMesh GltfDecoder::Decode(std::size_t index)
     return mesh;
 }
 
+void GltfDecoder::WarnOfMasks() const
+{
+    masks_.WarnOfUnreadable();
+    if (unmapped_ > 0) {
+        Warn(file_.job,
+             "%zu primitives with a masked material lack the texture coordinates that it asks for",
+             unmapped_);
+    }
+    if (masked_ > 0) {
+        Warn(file_.job,
+             "%zu primitives with a masked material were left out; --masked opaque keeps them",
+             masked_);
+    }
+}
+
 void GltfDecoder::WarnOfOmissions() const
 {
     if (blended_ > 0) {
@@ -214,11 +281,7 @@ void GltfDecoder::WarnOfOmissions() const
              "left out",
              blended_);
     }
-    if (masked_ > 0) {
-        Warn(file_.job,
-             "%zu primitives with a masked material were left out; --masked opaque keeps them",
-             masked_);
-    }
+    WarnOfMasks();
     if (unplaced_ > 0) {
         Warn(file_.job, "%zu primitives without a POSITION were left out", unplaced_);
     }
@@ -239,6 +302,17 @@ void GltfDecoder::RefuseIfAllOmitted() const
            masked_ > 0    ? "keep the masked ones by --masked opaque"
            : blended_ > 0 ? "make the materials opaque if they block the view"
                           : "export the model again");
+}
+
+void GltfDecoder::RefuseIfTransparent() const
+{
+    if (judged_ == 0) {
+        return;
+    }
+    WarnOfOmissions();
+    Refuse(file_.job, PVT_NOTHING_INSIDE,
+           "no part of its masked surfaces is opaque, as closely as they were looked at; a higher "
+           "resolution looks more closely, and --masked opaque keeps them as they are");
 }
 
 } // namespace pvt

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The glTF reader: each step trusts only what the steps before it have checked.
-#include "gltf_geometry.hpp"
-#include "gltf_nodes.hpp"
+#include "gltf_cut.hpp"
 
 #include <cstdint>
 #include <iterator>
@@ -91,12 +90,6 @@ class OwnedBuilder
     pvtModelBuilder builder{};
 };
 
-// A mesh and how many instances of it are still to be placed.
-struct UsedMesh {
-    GltfMesh mesh;
-    std::size_t uses;
-};
-
 std::map<std::size_t, UsedMesh> DecodeMeshes(GltfDecoder& decoder,
                                              const std::vector<GltfInstance>& instances)
 {
@@ -147,11 +140,14 @@ void LoadGltf(const pvtLoadJob& job, const pvtSource& source, pvtModel* model)
     GltfDecoder decoder(file, draco);
     std::map<std::size_t, UsedMesh> meshes = DecodeMeshes(decoder, instances);
     pvtReportProgress(job.context, 0.8);
+    CutMaskedMeshes(file, instances, meshes);
+    pvtReportProgress(job.context, 0.9);
 
     OwnedBuilder owned(job);
     PlaceInstances(instances, meshes, owned.builder);
     if (owned.builder.model.mesh.triangleCount == 0 && owned.builder.dropped == 0) {
         decoder.RefuseIfAllOmitted();
+        decoder.RefuseIfTransparent();
         Refuse(job, "there is no triangle: %s; %s",
                instances.empty() ? "no node of the scene has a mesh"
                                  : "the scene's meshes hold at most points and lines",

@@ -181,7 +181,22 @@ constexpr Field kSkinFields[] = {
     {"joints", Kind::Indices, kRequired, "nodes"},
 };
 
-constexpr Field kTextureInfoFields[] = {Index("index", "textures", kRequired)};
+constexpr Field kTextureTransformFields[] = {
+    Numbers("offset", 2),
+    Plain("rotation", Kind::Number),
+    Numbers("scale", 2),
+    Integer("texCoord", 0, kMaxInt),
+};
+constexpr Table kTextureTransform = MakeTable(kTextureTransformFields);
+constexpr Field kTextureInfoExtensionFields[] = {
+    Object("KHR_texture_transform", kTextureTransform),
+};
+constexpr Table kTextureInfoExtensions = MakeTable(kTextureInfoExtensionFields);
+constexpr Field kTextureInfoFields[] = {
+    Index("index", "textures", kRequired),
+    Integer("texCoord", 0, kMaxInt),
+    Object("extensions", kTextureInfoExtensions),
+};
 constexpr Table kTextureInfo = MakeTable(kTextureInfoFields);
 constexpr Field kRoughnessFields[] = {
     Object("baseColorTexture", kTextureInfo),
@@ -195,10 +210,28 @@ constexpr Field kMaterialFields[] = {
     Object("pbrMetallicRoughness", kRoughness),
 };
 
-constexpr Field kTextureFields[] = {Index("source", "images")};
+constexpr Field kTextureSourceFields[] = {Index("source", "images")};
+constexpr Table kTextureSource = MakeTable(kTextureSourceFields);
+constexpr Field kTextureExtensionFields[] = {
+    Object("EXT_texture_webp", kTextureSource),
+    Object("EXT_texture_avif", kTextureSource),
+    Object("KHR_texture_basisu", kTextureSource),
+    Object("MSFT_texture_dds", kTextureSource),
+};
+constexpr Table kTextureExtensions = MakeTable(kTextureExtensionFields);
+constexpr Field kTextureFields[] = {
+    Index("source", "images"),
+    Index("sampler", "samplers"),
+    Object("extensions", kTextureExtensions),
+};
+constexpr Field kSamplerFields[] = {
+    Integer("wrapS", 0, kMaxInt),
+    Integer("wrapT", 0, kMaxInt),
+};
 constexpr Field kImageFields[] = {
     Index("bufferView", "bufferViews"),
     Plain("uri", Kind::Text),
+    Plain("name", Kind::Text),
 };
 
 constexpr Table kBuffer = MakeTable(kBufferFields);
@@ -210,6 +243,7 @@ constexpr Table kNode = MakeTable(kNodeFields);
 constexpr Table kScene = MakeTable(kSceneFields);
 constexpr Table kSkin = MakeTable(kSkinFields);
 constexpr Table kTexture = MakeTable(kTextureFields);
+constexpr Table kSampler = MakeTable(kSamplerFields);
 constexpr Table kImage = MakeTable(kImageFields);
 constexpr Field kDocumentFields[] = {
     Index("scene", "scenes"),
@@ -218,6 +252,7 @@ constexpr Field kDocumentFields[] = {
     Objects("accessors", kAccessor),
     Objects("images", kImage),
     Objects("textures", kTexture),
+    Objects("samplers", kSampler),
     Objects("materials", kMaterial),
     Objects("meshes", kMesh),
     Objects("nodes", kNode),

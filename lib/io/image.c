@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Images through the module paravent_image: linking OpenImageIO itself would load 261 libraries at
 // the start of every process.
+#include "alpha.h"
 #include "companion.h"
 #include "image_module.h"
 #include "source.h"
@@ -11,12 +12,15 @@
 #include <dlfcn.h>
 #include <paravent/io.h>
 #include <paravent/output.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { REASON_SIZE = 512 };
 
 static const char kModuleFile[] = "paravent_image.so";
 
+// Rows between two questions whether to stop; the widest ones take some 10 ms.
+enum { ALPHA_ROWS = 16 };
 static pvtStatus FailMissing(pvtContext* context, const char* path, pvtModuleState state,
                              const char* reason)
 {
@@ -136,4 +140,128 @@ pvtStatus pvtLoadImage(pvtContext* context, const char* path, pvtImage* image)
     }
     pvtSource_Free(context, &source);
     return status;
+}
+
+// By the first bytes, since names and media types are often wrong. Null for another format.
+static const char* FindFormat(const uint8_t* bytes, size_t size)
+{
+    static const struct {
+        const char* name;
+        const char* magic;
+        size_t length, offset;
+    } formats[] = {
+        {"png", "\x89PNG\r\n\x1a\n", 8, 0}, {"jpeg", "\xff\xd8\xff", 3, 0}, {"webp", "WEBP", 4, 8}};
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; ++i) {
+        const size_t end = formats[i].offset + formats[i].length;
+        if (size >= end &&
+            memcmp(bytes + formats[i].offset, formats[i].magic, formats[i].length) == 0) {
+            return formats[i].name;
+        }
+    }
+    return NULL;
+}
+
+static pvtStatus ReadAlphaRows(pvtContext* context, const pvtImageModule* module, void* opened,
+                               const char* label, pvtAlpha* alpha)
+{
+    pvtImageText error = {{0}};
+    char text[PVT_IMAGE_TEXT_SIZE];
+    for (int row = 0; row < alpha->height; row += ALPHA_ROWS) {
+        if (pvtIsCancelled(context)) {
+            return pvtFailCancelled(context);
+        }
+        const int left = alpha->height - row;
+        uint8_t* values = alpha->values + (size_t)row * (size_t)alpha->width;
+        if (!module->readAlpha(opened, row, left < ALPHA_ROWS ? left : ALPHA_ROWS, values,
+                               &error)) {
+            return pvtFail(context, PVT_INVALID_INPUT, "%s cannot be read: %s", label,
+                           pvtCleanText(error.text, text, sizeof text));
+        }
+    }
+    return PVT_OK;
+}
+
+// Deflate makes at most 1032 bytes of one, and a byte is at most 8 pixels of an image with a
+// palette: what claims more lies, and gets no memory.
+static pvtStatus CheckShape(pvtContext* context, const char* label, const pvtImageShape* shape,
+                            size_t size)
+{
+    const double count = (double)shape->width * shape->height;
+    if (shape->width > PVT_MAX_ALPHA_SIDE || shape->height > PVT_MAX_ALPHA_SIDE) {
+        return pvtFail(context, PVT_INVALID_INPUT,
+                       "%s has %d × %d pixels; at most %d a side are "
+                       "read",
+                       label, shape->width, shape->height, PVT_MAX_ALPHA_SIDE);
+    }
+    if (count > 8.0 * 1032.0 * (double)size) {
+        return pvtFail(context, PVT_INVALID_INPUT,
+                       "%s claims %d × %d pixels, but has only %zu bytes", label, shape->width,
+                       shape->height, size);
+    }
+    return PVT_OK;
+}
+
+static pvtStatus ReadAlpha(pvtContext* context, const pvtImageModule* module, void* opened,
+                           const char* label, pvtAlpha* alpha)
+{
+    const size_t count = (size_t)alpha->width * (size_t)alpha->height;
+    char purpose[PVT_IMAGE_TEXT_SIZE];
+    (void)snprintf(purpose, sizeof purpose, "%s: the alpha of %d × %d pixels", label, alpha->width,
+                   alpha->height);
+    pvtStatus status = pvtCheckMemory(context, count, purpose);
+    if (status != PVT_OK) {
+        return status;
+    }
+    alpha->values = pvtAllocate(context, count, 1);
+    status = alpha->values != NULL ? ReadAlphaRows(context, module, opened, label, alpha)
+                                   : pvtContext_GetStatus(context);
+    if (status != PVT_OK) {
+        pvtAlpha_Free(context, alpha);
+    }
+    return status;
+}
+
+static pvtStatus DecodeAlpha(pvtContext* context, const char* format, const char* label,
+                             const uint8_t* bytes, size_t size, pvtAlpha* alpha)
+{
+    const pvtImageModule* module = NULL;
+    pvtStatus status = OpenImageModule(context, label, &module);
+    if (status != PVT_OK) {
+        return status;
+    }
+    pvtImageText error = {{0}};
+    pvtImageShape shape = {0};
+    char text[PVT_IMAGE_TEXT_SIZE];
+    void* opened = module->openMemory(format, bytes, size, &shape, &error);
+    if (opened == NULL) {
+        return pvtFail(context, PVT_INVALID_INPUT, "%s cannot be read: %s", label,
+                       pvtCleanText(error.text, text, sizeof text));
+    }
+    status = CheckShape(context, label, &shape, size);
+    if (status == PVT_OK && shape.hasAlpha) {
+        alpha->width = shape.width;
+        alpha->height = shape.height;
+        status = ReadAlpha(context, module, opened, label, alpha);
+    }
+    module->close(opened);
+    return status;
+}
+
+pvtStatus pvtDecodeAlpha(pvtContext* context, const char* label, const uint8_t* bytes, size_t size,
+                         pvtAlpha* alpha)
+{
+    *alpha = (pvtAlpha){0};
+    const char* format = FindFormat(bytes, size);
+    if (format == NULL) {
+        return pvtFail(context, PVT_UNSUPPORTED, "%s is neither PNG, JPEG nor WebP", label);
+    }
+    // JPEG has no alpha: there is no need to look into it.
+    return strcmp(format, "jpeg") == 0 ? PVT_OK
+                                       : DecodeAlpha(context, format, label, bytes, size, alpha);
+}
+
+void pvtAlpha_Free(pvtContext* context, pvtAlpha* alpha)
+{
+    pvtRelease(context, alpha->values);
+    *alpha = (pvtAlpha){0};
 }

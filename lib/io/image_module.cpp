@@ -25,6 +25,7 @@ struct OpenImage {
     std::unique_ptr<OIIO::Filesystem::IOMemReader> reader; // must outlive `input`
     std::unique_ptr<OIIO::ImageInput> input;
     int width = 0, height = 0, channels = 0;
+    int alphaChannel = -1; // of an image opened from memory
     bool isLinear = false; // floats, as in EXR, are not sRGB yet
 };
 
@@ -218,6 +219,75 @@ bool Read(void* handle, std::uint8_t* pixels, pvtImageText* error)
     });
 }
 
+// By the name of the format, so that no other reader and no file is tried.
+void* OpenMemory(const char* format, const std::uint8_t* bytes, std::size_t size,
+                 pvtImageShape* shape, pvtImageText* error)
+{
+    const LeakCheckPause pause;
+    return Guard<void*>(error, nullptr, [&]() -> void* {
+        auto image = std::make_unique<OpenImage>();
+        image->reader = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, size);
+        image->input = OIIO::ImageInput::create(format);
+        if (image->input == nullptr) {
+            Tell(error, OIIO::geterror());
+            return nullptr;
+        }
+        OIIO::ImageSpec config, spec;
+        config.attribute("oiio:UnassociatedAlpha", 1);
+        if (image->input->supports("ioproxy") == 0 ||
+            !image->input->set_ioproxy(image->reader.get()) ||
+            !image->input->open(std::string("memory.") + format, spec, config)) {
+            Tell(error, image->input->geterror());
+            return nullptr;
+        }
+        if (spec.nchannels < 1 || spec.depth > 1 || spec.width < 1 || spec.height < 1 ||
+            spec.tile_width != 0) {
+            Tell(error, "it is not a flat picture");
+            return nullptr;
+        }
+        image->width = spec.width;
+        image->height = spec.height;
+        image->channels = spec.nchannels;
+        image->alphaChannel = spec.alpha_channel;
+        *shape = {spec.width, spec.height, spec.alpha_channel >= 0};
+        return image.release();
+    });
+}
+
+bool ReadAlphaRows(OpenImage& image, int firstRow, int rowCount, std::uint8_t* alpha)
+{
+    const OIIO::ImageSpec& spec = image.input->spec();
+    const int begin = spec.y + firstRow, end = begin + rowCount, channel = image.alphaChannel;
+    if (spec.format == OIIO::TypeDesc::UINT8) {
+        return image.input->read_scanlines(0, 0, begin, end, 0, channel, channel + 1,
+                                           OIIO::TypeDesc::UINT8, alpha);
+    }
+    const std::size_t count =
+        static_cast<std::size_t>(rowCount) * static_cast<std::size_t>(image.width);
+    std::vector<std::uint16_t> values(count);
+    if (!image.input->read_scanlines(0, 0, begin, end, 0, channel, channel + 1,
+                                     OIIO::TypeDesc::UINT16, values.data())) {
+        return false;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        alpha[i] = static_cast<std::uint8_t>(values[i] / 257);
+    }
+    return true;
+}
+
+bool ReadAlpha(void* handle, int firstRow, int rowCount, std::uint8_t* alpha, pvtImageText* error)
+{
+    const LeakCheckPause pause;
+    return Guard(error, false, [&] {
+        auto* image = static_cast<OpenImage*>(handle);
+        if (!ReadAlphaRows(*image, firstRow, rowCount, alpha)) {
+            Tell(error, image->input->geterror());
+            return false;
+        }
+        return true;
+    });
+}
+
 void Close(void* handle)
 {
     delete static_cast<OpenImage*>(handle);
@@ -228,7 +298,7 @@ void Close(void* handle)
 extern "C" const pvtImageModule* pvtGetImageModule(void)
 {
     static const pvtImageModule module = {
-        PVT_IMAGE_MODULE_VERSION, EncodePng, Release, Open, Read, Close,
+        PVT_IMAGE_MODULE_VERSION, EncodePng, Release, Open, Read, Close, OpenMemory, ReadAlpha,
     };
     return &module;
 }

@@ -13,12 +13,18 @@ extern "C" {
 #endif
 
 /// Raised with every change of pvtImageModule.
-enum { PVT_IMAGE_MODULE_VERSION = 1, PVT_IMAGE_TEXT_SIZE = 512 };
+enum { PVT_IMAGE_MODULE_VERSION = 2, PVT_IMAGE_TEXT_SIZE = 512 };
 
 /// Why a call failed.
 typedef struct pvtImageText {
     char text[PVT_IMAGE_TEXT_SIZE];
 } pvtImageText;
+
+/// What is known of an image before its pixels are read.
+typedef struct pvtImageShape {
+    int width, height;
+    bool hasAlpha;
+} pvtImageShape;
 
 typedef struct pvtImageModule {
     uint32_t version;
@@ -36,6 +42,14 @@ typedef struct pvtImageModule {
     /// Fills 4 × width × height bytes, in the layout of encodePng.
     bool (*read)(void* image, uint8_t* pixels, pvtImageText* error);
     void (*close)(void* image);
+
+    /// Opens an image of `format`, such as "png", out of memory and nowhere else. Null on failure.
+    /// To be closed by `close`.
+    void* (*openMemory)(const char* format, const uint8_t* bytes, size_t size, pvtImageShape* shape,
+                        pvtImageText* error);
+    /// The alpha of `rowCount` rows, one byte a pixel, rounded down; rows are asked for from the
+    /// top on. Only of an image that has alpha.
+    bool (*readAlpha)(void* image, int firstRow, int rowCount, uint8_t* alpha, pvtImageText* error);
 } pvtImageModule;
 
 /// The one symbol of the module.

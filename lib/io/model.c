@@ -7,8 +7,11 @@
 #include "base/context.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
+
+enum { MAX_MASKED_RESOLUTION = 65536 };
 
 pvtLoadOptions pvtDefaultLoadOptions(void)
 {
@@ -16,6 +19,8 @@ pvtLoadOptions pvtDefaultLoadOptions(void)
         .scene = -1,
         .node = NULL,
         .masked = PVT_MASKED_AUTO,
+        .maskedResolution = 1024,
+        .maskedCell = 0.0,
         .maxBytes = (size_t)4 << 30,
     };
 }
@@ -127,6 +132,13 @@ pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* options, const
         return pvtFail(context, PVT_INVALID_ARGUMENT,
                        "scene is %d and masked %d; a scene is −1 or an index, masked 0 to 2",
                        full.scene, (int)full.masked);
+    }
+    if (full.maskedResolution < 1 || full.maskedResolution > MAX_MASKED_RESOLUTION ||
+        !(full.maskedCell >= 0.0 && isfinite(full.maskedCell))) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT,
+                       "maskedResolution is %d and maskedCell %g; they may be 1 to %d, and 0 or "
+                       "more",
+                       full.maskedResolution, full.maskedCell, MAX_MASKED_RESOLUTION);
     }
     pvtBeginStage(context, "load");
     pvtLoadJob job = {context, &full, path, -1, 0};

@@ -10,16 +10,23 @@
 extern "C" {
 #endif
 
-/// What to do with materials whose alpha is masked. AUTO is SKIP, as long as textures are not
-/// looked at. What is left out is told by a warning.
+/// What to do with glTF materials whose alphaMode is MASK. AUTO: their alpha decides, texel by
+/// texel, and triangles are cut to what is opaque of them for sure; where a texture cannot be looked
+/// at it is SKIP. OPAQUE: as if they had no mask. SKIP: they are left out. What is left out is told
+/// by a warning.
 typedef enum pvtMasked { PVT_MASKED_AUTO, PVT_MASKED_OPAQUE, PVT_MASKED_SKIP } pvtMasked;
 
 typedef struct pvtLoadOptions {
     int scene;        ///< −1: the default scene, or the first; else its index; default −1
     const char* node; ///< only nodes of this name and what is below them; null: everything
     pvtMasked masked; ///< default PVT_MASKED_AUTO
-    size_t maxBytes;  ///< of any one file; default 4 GiB
-    bool keepMeshes;  ///< fill pvtModel's meshes too; default false
+    /// How closely masked textures are looked at: texels are taken together, as long as they stay
+    /// smaller than the model's longest side over this, and are opaque when all of them are. Coarser
+    /// means fewer triangles, and less of the opaque parts, never more. 1 to 65536; default 1024.
+    int maskedResolution;
+    double maskedCell; ///< [wu] > 0: texels are taken together up to this size instead; default 0
+    size_t maxBytes;   ///< of any one file; default 4 GiB
+    bool keepMeshes;   ///< fill pvtModel's meshes too; default false
 } pvtLoadOptions;
 
 /// One instance of a mesh by a node: a run of triangles of the model's mesh. Where a node of OBJ,
@@ -50,7 +57,9 @@ PVT_API pvtLoadOptions pvtDefaultLoadOptions(void);
 /// pose with one. PVT_INVALID_INPUT names file, place, reason and remedy; PVT_UNSUPPORTED names the
 /// format or the required extension that is missing; PVT_INVALID_ARGUMENT the scene or node that is
 /// not there. A file without any triangle is PVT_INVALID_INPUT, and so is one that contradicts
-/// itself: counts, ranges and bounds are held against the data.
+/// itself: counts, ranges and bounds are held against the data. One all of whose surface is masked
+/// away is PVT_NOTHING_INSIDE. Textures of masked materials are read as PNG, JPEG or WebP, by
+/// OpenImageIO (see pvtLoadImage), which only a file with such a texture opens.
 ///
 /// OBJ, PLY, STL, FBX and DAE are parsed by assimp in a process of its own, the program
 /// paravent-import, and what KHR_draco_mesh_compression holds by paravent-draco. They are looked
