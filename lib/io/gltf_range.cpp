@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pvt
 {
@@ -24,16 +25,15 @@ std::string GetGltfPlace(std::size_t mesh, std::size_t primitive)
     return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
 }
 
-GltfRange::GltfRange(const GltfFile& file, std::size_t accessor, const std::string& place,
-                     bool lossy)
-    : file_(file), accessor_(accessor), place_(place)
+GltfRange::GltfRange(const GltfFile& file, std::size_t accessor, std::string place, bool lossy)
+    : file_(file), accessor_(accessor), place_(std::move(place))
 {
     const tinygltf::Accessor& source = file.model.accessors[accessor];
     std::fill_n(least_, 3, -std::numeric_limits<double>::infinity());
     std::fill_n(most_, 3, std::numeric_limits<double>::infinity());
     const auto read = [&](const std::vector<double>& values, const char* name, double* out) {
         if (!values.empty() && values.size() != 3) {
-            Refuse(file.job, "%s: accessors[%zu].%s has %zu numbers; a VEC3 has 3", place.c_str(),
+            Refuse(file.job, "%s: accessors[%zu].%s has %zu numbers; a VEC3 has 3", place_.c_str(),
                    accessor, name, values.size());
         }
         for (std::size_t k = 0; k < values.size(); ++k) {
@@ -46,7 +46,7 @@ GltfRange::GltfRange(const GltfFile& file, std::size_t accessor, const std::stri
     for (std::size_t k = 0; k < 3; ++k) {
         if (least_[k] > most_[k]) {
             Refuse(file.job, "%s: accessors[%zu].min[%zu] is %.9g, which is more than max, %.9g",
-                   place.c_str(), accessor, k, least_[k], most_[k]);
+                   place_.c_str(), accessor, k, least_[k], most_[k]);
         }
         if (std::isfinite(least_[k]) && std::isfinite(most_[k])) {
             extent = std::max(extent, most_[k] - least_[k]);

@@ -16,7 +16,7 @@ class GltfRange
 {
   public:
     /// Of a VEC3. `lossy`: what is behind it was rounded by a compression, the range was not.
-    GltfRange(const GltfFile& file, std::size_t accessor, const std::string& place, bool lossy);
+    GltfRange(const GltfFile& file, std::size_t accessor, std::string place, bool lossy);
 
     /// Refuses a finite position that lies outside of the range by more than rounding.
     void Check(const pvtVec3& position, std::size_t element) const
@@ -35,7 +35,7 @@ class GltfRange
 
     const GltfFile& file_;
     std::size_t accessor_;
-    const std::string& place_;
+    std::string place_;
     double least_[3], most_[3];  // as the accessor says
     double lower_[3], upper_[3]; // with what rounding may add
 };

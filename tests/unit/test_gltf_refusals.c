@@ -112,6 +112,30 @@ static void lies_are_refused_with_their_place_and_reason(void** state)
     }
 }
 
+static void a_range_that_the_positions_leave_is_refused(void** state)
+{
+    Fixture* f = *state;
+    const Pack cube = PackCube();
+    const Lie lies[] = {
+        {"'count':8", "'count':8,'min':[0,0,0],'max':[1,0.5,1]",
+         "meshes[0].primitives[0].attributes.POSITION: element 2 has y = 1, but accessors[0].max "
+         "says that it is at most 0.5",
+         0},
+        {"'count':8", "'count':8,'min':[0,0,0.25],'max':[1,1,1]",
+         "meshes[0].primitives[0].attributes.POSITION: element 0 has z = 0, but accessors[0].min "
+         "says that it is at least 0.25",
+         0},
+        {"'count':8", "'count':8,'min':[0,0,0],'max':[1,1,-1]",
+         "meshes[0].primitives[0].attributes.POSITION: accessors[0].min[2] is 0, which is more "
+         "than max, -1",
+         0},
+        {"'count':8", "'count':8,'min':[0,0]", "accessors[0].min has 2 numbers", 0},
+    };
+    for (size_t i = 0; i < sizeof lies / sizeof lies[0]; ++i) {
+        CheckLie(f, CUBE, &cube, &lies[i]);
+    }
+}
+
 static void a_stride_below_the_element_is_refused(void** state)
 {
     Fixture* f = *state;
@@ -404,6 +428,7 @@ int main(void)
         TEST(cycles_and_second_parents_are_refused),
         TEST(extensions_that_are_required_and_unknown_are_named),
         TEST(lies_are_refused_with_their_place_and_reason),
+        TEST(a_range_that_the_positions_leave_is_refused),
         TEST(a_stride_below_the_element_is_refused),
         TEST(indices_out_of_range_are_refused),
         TEST(counts_without_data_are_limited),
