@@ -18,6 +18,13 @@ constexpr double kRounding = 1e-4;
 constexpr double kLoss = 1.0 / 32;
 constexpr double kDigits = 1e-6;
 
+bool IsCompressed(const GltfFile& file, const tinygltf::Accessor& accessor)
+{
+    const std::size_t view = static_cast<std::size_t>(accessor.bufferView);
+    return view < GetCount(file.document, "bufferViews") &&
+           FindExtension(file.document["bufferViews"][view], "EXT_meshopt_compression") != nullptr;
+}
+
 } // namespace
 
 std::string GetGltfPlace(std::size_t mesh, std::size_t primitive)
@@ -53,7 +60,8 @@ GltfRange::GltfRange(const GltfFile& file, std::size_t accessor, std::string pla
             magnitude = std::max({magnitude, std::fabs(least_[k]), std::fabs(most_[k])});
         }
     }
-    const double slack = (lossy ? kLoss : kRounding) * extent + kDigits * magnitude;
+    const double slack =
+        (lossy || IsCompressed(file, source) ? kLoss : kRounding) * extent + kDigits * magnitude;
     for (std::size_t k = 0; k < 3; ++k) {
         lower_[k] = least_[k] - slack;
         upper_[k] = most_[k] + slack;
