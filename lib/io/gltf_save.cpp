@@ -3,6 +3,7 @@
 // full disk.
 #include "gltf_save.hpp"
 #include "placement.h"
+#include "writer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -138,9 +139,7 @@ class Saver
 
     std::string GetName(std::size_t index) const
     {
-        const char* name = job_.items[index].name;
-        return name != nullptr && name[0] != '\0' ? CleanText(name)
-                                                  : "node_" + std::to_string(index);
+        return CleanText(pvt::GetItemName(job_, index).c_str());
     }
 
     // Numbers stay doubles: tinygltf cuts integers to 32 bits.

@@ -154,20 +154,6 @@ static bool PlaceNodes(const pvtLoadJob* job, const Scene* scene, Placement* pla
     return found;
 }
 
-// A node's meshes as one, in memory of the context.
-typedef struct JoinedMesh {
-    pvtVec3* positions;
-    uint32_t* indices;
-    size_t positionCount, triangleCount;
-} JoinedMesh;
-
-static void FreeJoinedMesh(pvtContext* context, JoinedMesh* mesh)
-{
-    pvtRelease(context, mesh->positions);
-    pvtRelease(context, mesh->indices);
-    *mesh = (JoinedMesh){0};
-}
-
 static void CountUses(const Scene* scene, const pvtImportNode* node, uint64_t* positionCount,
                       uint64_t* triangleCount)
 {
@@ -179,7 +165,7 @@ static void CountUses(const Scene* scene, const pvtImportNode* node, uint64_t* p
     }
 }
 
-static void AppendMesh(const Scene* scene, const pvtImportMesh* mesh, JoinedMesh* joined)
+static void AppendMesh(const Scene* scene, const pvtImportMesh* mesh, pvtMesh* joined)
 {
     const float* positions = scene->positions + 3 * mesh->firstPosition;
     const uint32_t* indices = scene->indices + mesh->firstIndex;
@@ -194,16 +180,17 @@ static void AppendMesh(const Scene* scene, const pvtImportMesh* mesh, JoinedMesh
     joined->triangleCount += mesh->triangleCount;
 }
 
+// A node's meshes as one.
 static pvtStatus JoinMeshes(pvtContext* context, const Scene* scene, const pvtImportNode* node,
-                            JoinedMesh* joined)
+                            pvtMesh* joined)
 {
     uint64_t positionCount = 0, triangleCount = 0;
     CountUses(scene, node, &positionCount, &triangleCount);
-    *joined = (JoinedMesh){0};
+    *joined = (pvtMesh){0};
     joined->positions = pvtAllocate(context, positionCount, sizeof(pvtVec3));
     joined->indices = pvtAllocate(context, 3 * triangleCount, sizeof(uint32_t));
     if (joined->positions == NULL || joined->indices == NULL) {
-        FreeJoinedMesh(context, joined);
+        pvtMesh_Free(context, joined);
         return pvtContext_GetStatus(context);
     }
     for (uint64_t i = 0; i < node->useCount; ++i) {
@@ -244,7 +231,7 @@ static pvtStatus AddNode(const Scene* scene, uint64_t index, const Placement* pl
                          pvtModelBuilder* builder)
 {
     const pvtImportNode* node = &scene->nodes[index];
-    JoinedMesh joined;
+    pvtMesh joined;
     pvtStatus status = JoinMeshes(builder->context, scene, node, &joined);
     if (status != PVT_OK) {
         return status;
@@ -258,7 +245,7 @@ static pvtStatus AddNode(const Scene* scene, uint64_t index, const Placement* pl
     const pvtLocalMesh mesh = {joined.positions, joined.indices, joined.positionCount,
                                joined.triangleCount};
     status = pvtModelBuilder_AddPart(builder, name, node->group, place->transform, &mesh);
-    FreeJoinedMesh(builder->context, &joined);
+    pvtMesh_Free(builder->context, &joined);
     return status;
 }
 
