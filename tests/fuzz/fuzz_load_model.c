@@ -18,10 +18,8 @@ static void Require(bool holds, const char* what)
     }
 }
 
-static void CheckModel(const pvtModel* model)
+static void CheckMesh(const pvtMesh* mesh)
 {
-    const pvtMesh* mesh = &model->mesh;
-    Require(mesh->triangleCount > 0, "a model without triangles came out");
     for (size_t i = 0; i < 3 * mesh->triangleCount; ++i) {
         Require(mesh->indices[i] < mesh->positionCount, "an index out of range came out");
     }
@@ -29,11 +27,22 @@ static void CheckModel(const pvtModel* model)
         const pvtVec3 p = mesh->positions[i];
         Require(isfinite(p.x) && isfinite(p.y) && isfinite(p.z), "a position is not finite");
     }
+}
+
+static void CheckModel(const pvtModel* model)
+{
+    const pvtMesh* mesh = &model->mesh;
+    Require(mesh->triangleCount > 0, "a model without triangles came out");
+    CheckMesh(mesh);
+    for (size_t i = 0; i < model->meshCount; ++i) {
+        CheckMesh(&model->meshes[i]);
+    }
     for (size_t i = 0; i < model->partCount; ++i) {
         const pvtModelPart* part = &model->parts[i];
         Require(part->name != NULL && part->triangleCount <= mesh->triangleCount &&
                     part->firstTriangle <= mesh->triangleCount - part->triangleCount,
                 "a part lies outside the mesh");
+        Require(part->meshIndex < model->meshCount, "a part's mesh is not there");
     }
 }
 
@@ -44,13 +53,16 @@ static void LoadModel(const char* path)
     def.memoryLimit = (size_t)256 << 20;
     pvtContext* context = NULL;
     Require(pvtCreateContext(&def, &context) == PVT_OK, "no context");
+    pvtLoadOptions options = pvtDefaultLoadOptions();
+    options.keepMeshes = true;
     pvtModel model;
-    const pvtStatus status = pvtLoadModel(context, NULL, path, &model);
+    const pvtStatus status = pvtLoadModel(context, &options, path, &model);
     if (status == PVT_OK) {
         CheckModel(&model);
     } else {
         Require(pvtContext_GetMessage(context)[0] != '\0', "a failure without a message");
-        Require(model.mesh.positions == NULL && model.parts == NULL, "a failure left something");
+        Require(model.mesh.positions == NULL && model.parts == NULL && model.meshes == NULL,
+                "a failure left something");
     }
     pvtModel_Free(context, &model);
     Require(pvtContext_GetHeldBytes(context) == 0, "something leaked");
