@@ -88,13 +88,6 @@ std::uint32_t LoadIndex(const std::uint8_t* bytes, int type)
     return value;
 }
 
-const char* GetComponentName(int type)
-{
-    static const char* const names[] = {"BYTE", "UNSIGNED_BYTE", "SHORT", "UNSIGNED_SHORT",
-                                        "INT",  "UNSIGNED_INT",  "FLOAT"};
-    return names[type - TINYGLTF_COMPONENT_TYPE_BYTE];
-}
-
 const char* GetTypeName(int type)
 {
     switch (type) {
@@ -123,6 +116,14 @@ bool Fits(std::size_t count, std::size_t stride, std::size_t size, std::size_t o
 }
 
 } // namespace
+
+const char* GetGltfComponentName(int type)
+{
+    static const char* const names[] = {"BYTE", "UNSIGNED_BYTE", "SHORT", "UNSIGNED_SHORT",
+                                        "INT",  "UNSIGNED_INT",  "FLOAT"};
+    const int place = type - TINYGLTF_COMPONENT_TYPE_BYTE;
+    return place >= 0 && place < 7 ? names[place] : "another type";
+}
 
 double NormalizeGltf(double value, int type)
 {
@@ -307,7 +308,7 @@ pvtVec3 GltfAccessor::GetVec3(std::size_t element) const
 std::string GltfAccessor::Describe() const
 {
     return std::string(normalized_ ? "normalized " : "") + GetTypeName(type_) + " of " +
-           GetComponentName(componentType_);
+           GetGltfComponentName(componentType_);
 }
 
 } // namespace pvt

@@ -16,6 +16,9 @@ struct GltfFile {
     GltfData& data;
 };
 
+/// "FLOAT" and the like.
+const char* GetGltfComponentName(int type);
+
 /// Integers that stand for fractions: glTF 2.0, section 3.11.
 double NormalizeGltf(double value, int componentType);
 

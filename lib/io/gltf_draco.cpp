@@ -270,10 +270,9 @@ void GltfDraco::CheckFit(const Place& place, const Entry& entry) const
         const int count =
             tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
         if (found.componentType != accessor.componentType || found.componentCount != count) {
-            Refuse(file_.job,
-                   "%s: its data has %d components of type %d, but accessors[%d] says %d of %d",
-                   name.c_str(), found.componentCount, found.componentType, index, count,
-                   accessor.componentType);
+            Refuse(file_.job, "%s: its data has %d components of %s, but accessors[%d] %d of %s",
+                   name.c_str(), found.componentCount, GetGltfComponentName(found.componentType),
+                   index, count, GetGltfComponentName(accessor.componentType));
         }
     }
 }
