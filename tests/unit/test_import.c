@@ -273,33 +273,34 @@ static void no_descriptor_is_left_open(void** state)
     assert_int_equal(CountDescriptors(), before);
 }
 
+static pvtStatus LoadAndFree(pvtContext* context, const void* path)
+{
+    pvtLoadOptions options = pvtDefaultLoadOptions();
+    options.keepMeshes = true;
+    pvtModel model;
+    const pvtStatus status = pvtLoadModel(context, &options, path, &model);
+    assert_int_equal(model.mesh.triangleCount, status == PVT_OK ? 1 : 0);
+    assert_true((model.meshes != NULL) == (status == PVT_OK));
+    pvtModel_Free(context, &model);
+    return status;
+}
+
+// With a position that is not finite, so that others have to be moved together.
+static const char* WriteTwoTriangles(Fixture* f)
+{
+    const char* path = InFolder(&f->folder, "a.obj");
+    WriteText(path, TETRAHEDRON "v nan 0 0\nf 1 2 3\nf 3 4 5\n");
+    return path;
+}
+
 static void importing_stops_when_asked(void** state)
 {
-    Fixture* f = *state;
-    WriteText(InFolder(&f->folder, "a.obj"), TETRAHEDRON "f 1 2 3\n");
-    CancelCounter counter = {0};
-    pvtContext* context = CreateCancelledContext(&counter, 1);
-    assert_int_equal(pvtLoadModel(context, NULL, InFolder(&f->folder, "a.obj"), &f->model),
-                     PVT_CANCELLED);
-    DestroyTestContext(context);
+    CheckEveryCancel(LoadAndFree, WriteTwoTriangles(*state));
 }
 
 static void every_failing_allocation_is_reported(void** state)
 {
-    Fixture* f = *state;
-    WriteText(InFolder(&f->folder, "a.obj"), TETRAHEDRON "v nan 0 0\nf 1 2 3\nf 3 4 5\n");
-    pvtStatus status = PVT_OUT_OF_MEMORY;
-    for (int failAt = 1; status != PVT_OK; ++failAt) {
-        PoorHeap heap = {.failAt = failAt};
-        pvtContext* context = CreatePoorContext(&heap);
-        pvtModel model;
-        status = pvtLoadModel(context, NULL, InFolder(&f->folder, "a.obj"), &model);
-        assert_true(status == PVT_OK || status == PVT_OUT_OF_MEMORY);
-        assert_int_equal(model.mesh.triangleCount, status == PVT_OK ? 1 : 0);
-        pvtModel_Free(context, &model);
-        assert_true(failAt < 100);
-        DestroyTestContext(context);
-    }
+    CheckEveryAllocation(LoadAndFree, WriteTwoTriangles(*state));
 }
 
 int main(void)
