@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace pvt
@@ -69,6 +70,17 @@ Transform GetLocalTransform(const tinygltf::Node& node)
     return Compose(t, q, s);
 }
 
+// To a thousandth of what the larger one moves or scales by.
+bool AreNearlyEqual(const Transform& a, const Transform& b)
+{
+    double largest = 0.0, difference = 0.0;
+    for (std::size_t k = 0; k < 16; ++k) {
+        largest = std::max({largest, std::fabs(a[k]), std::fabs(b[k])});
+        difference = std::max(difference, std::fabs(a[k] - b[k]));
+    }
+    return difference <= 1e-3 * largest;
+}
+
 class Walker
 {
   public:
@@ -103,10 +115,21 @@ class Walker
         if (skinned_ > 0) {
             Warn(file_.job, "%zu skinned meshes; their bind pose is taken", skinned_);
         }
+        if (posed_ > 0) {
+            Warn(file_.job,
+                 "%zu skinned meshes stand in another pose than they were bound in; bake the pose "
+                 "in if it is the one that is seen",
+                 posed_);
+        }
         return std::move(instances_);
     }
 
   private:
+    /// Where a skin's meshes stand, and whether that is how the file shows them.
+    struct BindPose {
+        Transform transform;
+        bool isShown;
+    };
     struct Visit {
         std::size_t node;
         bool wanted; // the node asked for, or below it
@@ -143,7 +166,7 @@ class Walker
     // From the roots down. With one parent each, what is not reached lies in a cycle.
     void ComputeGlobals()
     {
-        std::vector<std::size_t> queue;
+        std::vector<std::size_t>& queue = downwards_;
         queue.reserve(nodes_.size());
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             if (parents_[i] == kNone) {
@@ -228,7 +251,9 @@ class Walker
         Transform transform = globals_[index];
         if (node.skin >= 0) {
             ++skinned_;
-            transform = GetBindTransform(static_cast<std::size_t>(node.skin));
+            const BindPose& pose = GetBindPose(static_cast<std::size_t>(node.skin));
+            posed_ += pose.isShown ? 0 : 1;
+            transform = pose.transform;
         }
         const Json* instancing =
             FindExtension(file_.document["nodes"][index], "EXT_mesh_gpu_instancing");
@@ -296,39 +321,86 @@ class Walker
         }
     }
 
-    // A skinned mesh ignores its node's transform. In the bind pose all joints move it alike, as
-    // the first does: by what the joint stands at, after what took the mesh to the joint's space.
-    Transform GetBindTransform(std::size_t index) const
+    // A skinned mesh ignores its node's transform (glTF 2.0, section 3.7.3.3). In the bind pose all
+    // joints move it alike: by what the joint stands at, after what took the mesh to the joint's
+    // space. Where they do not, the file shows them in another pose, and the one nearest to the
+    // root, which carries the others, tells best where the whole stands.
+    const BindPose& GetBindPose(std::size_t index)
+    {
+        const auto known = bindPoses_.find(index);
+        return known != bindPoses_.end()
+                   ? known->second
+                   : bindPoses_.emplace(index, ComputeBindPose(index)).first->second;
+    }
+
+    BindPose ComputeBindPose(std::size_t index)
     {
         const tinygltf::Skin& skin = file_.model.skins[index];
         if (skin.joints.empty()) {
             Refuse(file_.job, "skins[%zu] has no joints", index);
         }
-        Transform inverse = kIdentity;
-        if (skin.inverseBindMatrices >= 0) {
-            const GltfAccessor matrices(file_, static_cast<std::size_t>(skin.inverseBindMatrices));
-            if (!matrices.Is(TINYGLTF_TYPE_MAT4) ||
-                matrices.ComponentType() != TINYGLTF_COMPONENT_TYPE_FLOAT ||
-                matrices.Count() < skin.joints.size()) {
-                Refuse(file_.job,
-                       "skins[%zu].inverseBindMatrices are not a MAT4 of FLOAT for each "
-                       "of %zu joints",
-                       index, skin.joints.size());
-            }
-            for (std::size_t k = 0; k < 16; ++k) {
-                inverse[k] = matrices.GetNumber(0, k);
+        const Attribute inverses = FindInverses(skin, index);
+        std::size_t best = 0, leastDepth = kNone;
+        for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+            const std::size_t depth = CountAncestors(static_cast<std::size_t>(skin.joints[i]));
+            if (depth < leastDepth) {
+                best = i;
+                leastDepth = depth;
             }
         }
-        return Multiply(globals_[static_cast<std::size_t>(skin.joints[0])], inverse);
+        BindPose pose = {GetSkinMatrix(skin, inverses, best), true};
+        for (std::size_t i = 0; i < skin.joints.size() && pose.isShown; ++i) {
+            pose.isShown = AreNearlyEqual(pose.transform, GetSkinMatrix(skin, inverses, i));
+        }
+        return pose;
+    }
+
+    Attribute FindInverses(const tinygltf::Skin& skin, std::size_t index) const
+    {
+        if (skin.inverseBindMatrices < 0) {
+            return {};
+        }
+        GltfAccessor matrices(file_, static_cast<std::size_t>(skin.inverseBindMatrices));
+        if (!matrices.Is(TINYGLTF_TYPE_MAT4) ||
+            matrices.ComponentType() != TINYGLTF_COMPONENT_TYPE_FLOAT ||
+            matrices.Count() < skin.joints.size()) {
+            Refuse(file_.job,
+                   "skins[%zu].inverseBindMatrices are not a MAT4 of FLOAT for each "
+                   "of %zu joints",
+                   index, skin.joints.size());
+        }
+        return matrices;
+    }
+
+    Transform GetSkinMatrix(const tinygltf::Skin& skin, const Attribute& inverses,
+                            std::size_t joint) const
+    {
+        Transform inverse = kIdentity;
+        GetElement(inverses, joint, 16, inverse.data());
+        return Multiply(globals_[static_cast<std::size_t>(skin.joints[joint])], inverse);
+    }
+
+    std::size_t CountAncestors(std::size_t node)
+    {
+        if (depths_.empty()) {
+            depths_.assign(nodes_.size(), 0);
+            for (const std::size_t i : downwards_) {
+                depths_[i] = parents_[i] == kNone ? 0 : depths_[parents_[i]] + 1;
+            }
+        }
+        return depths_[node];
     }
 
     const GltfFile& file_;
     const std::vector<tinygltf::Node>& nodes_;
     std::vector<std::size_t> parents_;
     std::vector<Transform> globals_;
+    std::vector<std::size_t> downwards_;        // all nodes, parents before their children
+    std::vector<std::size_t> depths_;           // how many ancestors a node has
+    std::map<std::size_t, BindPose> bindPoses_; // of skins
     std::vector<int> roots_;
     std::vector<GltfInstance> instances_;
-    std::size_t skinned_ = 0;
+    std::size_t skinned_ = 0, posed_ = 0;
     bool found_ = false;
 };
 

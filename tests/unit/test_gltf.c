@@ -449,6 +449,39 @@ static void skins_and_morphs_give_the_bind_pose_with_a_warning(void** state)
     assert_non_null(strstr(f->warnings.text, "morph"));
 }
 
+// Two joints, a hip and a knee: the hip is listed last, and stands where it was bound.
+static void a_skin_stands_where_the_joint_nearest_to_the_root_puts_it(void** state)
+{
+    Fixture* f = *state;
+    Pack pack = PackCube();
+    const float knee[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -4, -1, 0, 1};
+    const float hip[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -4, 0, 0, 1};
+    PackBytes(&pack, knee, sizeof knee);
+    PackBytes(&pack, hip, sizeof hip);
+    static const char* const json =
+        "{" ASSET "'buffers':[{'byteLength':296}],'bufferViews':[{'buffer':0,'byteLength':96},"
+        "{'buffer':0,'byteOffset':96,'byteLength':72},{'buffer':0,'byteOffset':168,"
+        "'byteLength':128}],'accessors':[{'bufferView':0,'componentType':5126,'count':8,"
+        "'type':'VEC3'},{'bufferView':1,'componentType':5123,'count':36,'type':'SCALAR'},"
+        "{'bufferView':2,'componentType':5126,'count':2,'type':'MAT4'}],"
+        "'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1}]}],"
+        "'skins':[{'joints':[2,1],'inverseBindMatrices':2}],'nodes':[{'mesh':0,'skin':0},"
+        "{'translation':[14,0,0],'children':[2]},{'translation':[0,%d,0]}],"
+        "'scenes':[{'nodes':[0,1]}]}";
+    char posed[2048];
+    // The knee where it was bound: all joints agree.
+    (void)snprintf(posed, sizeof posed, json, 1);
+    CHECK_OK(f->context, LoadGlb(f, posed, &pack));
+    CheckBounds(&f->model.mesh, (pvtVec3){10, 0, 0}, (pvtVec3){11, 1, 1}, 1e-12);
+    assert_non_null(strstr(f->warnings.text, "1 skinned meshes; their bind pose is taken"));
+    assert_null(strstr(f->warnings.text, "another pose"));
+    // The knee elsewhere: the bind pose all the same, with another warning.
+    (void)snprintf(posed, sizeof posed, json, 3);
+    CHECK_OK(f->context, LoadGlb(f, posed, &pack));
+    CheckBounds(&f->model.mesh, (pvtVec3){10, 0, 0}, (pvtVec3){11, 1, 1}, 1e-12);
+    assert_non_null(strstr(f->warnings.text, "1 skinned meshes stand in another pose"));
+}
+
 static void integers_written_as_fractions_are_read(void** state)
 {
     Fixture* f = *state;
@@ -584,6 +617,7 @@ int main(void)
         TEST(triangles_that_are_not_finite_are_dropped_with_a_warning),
         TEST(materials_that_let_light_through_are_left_out),
         TEST(skins_and_morphs_give_the_bind_pose_with_a_warning),
+        TEST(a_skin_stands_where_the_joint_nearest_to_the_root_puts_it),
         TEST(integers_written_as_fractions_are_read),
         TEST(copies_by_extension_are_instances),
         TEST(compressed_views_hold_what_was_packed),

@@ -11,9 +11,9 @@ extern "C" {
 #endif
 
 /// What to do with glTF materials whose alphaMode is MASK. AUTO: their alpha decides, texel by
-/// texel, and triangles are cut to what is opaque of them for sure; where a texture cannot be looked
-/// at it is SKIP. OPAQUE: as if they had no mask. SKIP: they are left out. What is left out is told
-/// by a warning.
+/// texel, and triangles are cut to what is opaque of them for sure; where a texture cannot be
+/// looked at it is SKIP. OPAQUE: as if they had no mask. SKIP: they are left out. What is left out
+/// is told by a warning.
 typedef enum pvtMasked { PVT_MASKED_AUTO, PVT_MASKED_OPAQUE, PVT_MASKED_SKIP } pvtMasked;
 
 typedef struct pvtLoadOptions {
@@ -21,8 +21,9 @@ typedef struct pvtLoadOptions {
     const char* node; ///< only nodes of this name and what is below them; null: everything
     pvtMasked masked; ///< default PVT_MASKED_AUTO
     /// How closely masked textures are looked at: texels are taken together, as long as they stay
-    /// smaller than the model's longest side over this, and are opaque when all of them are. Coarser
-    /// means fewer triangles, and less of the opaque parts, never more. 1 to 65536; default 1024.
+    /// smaller than the model's longest side over this, and are opaque when all of them are.
+    /// Coarser means fewer triangles, and less of the opaque parts, never more. 1 to 65536; default
+    /// 1024.
     int maskedResolution;
     double maskedCell; ///< [wu] > 0: texels are taken together up to this size instead; default 0
     size_t maxBytes;   ///< of any one file; default 4 GiB
@@ -54,12 +55,14 @@ PVT_API pvtLoadOptions pvtDefaultLoadOptions(void);
 /// the buffers beside the file, and nothing outside of its folder; no other format opens a second
 /// file. Triangles with positions that are not finite, or too large for a float, are dropped with a
 /// warning; blended materials are left out with one, and skins and morph targets give their bind
-/// pose with one. PVT_INVALID_INPUT names file, place, reason and remedy; PVT_UNSUPPORTED names the
-/// format or the required extension that is missing; PVT_INVALID_ARGUMENT the scene or node that is
-/// not there. A file without any triangle is PVT_INVALID_INPUT, and so is one that contradicts
-/// itself: counts, ranges and bounds are held against the data. One all of whose surface is masked
-/// away is PVT_NOTHING_INSIDE. Textures of masked materials are read as PNG, JPEG or WebP, by
-/// OpenImageIO (see pvtLoadImage), which only a file with such a texture opens.
+/// pose with one: the mesh as it was modelled, where the joint nearest to the root puts it, and the
+/// base shape whatever the weights. PVT_INVALID_INPUT names file, place, reason and remedy;
+/// PVT_UNSUPPORTED names the format or the required extension that is missing; PVT_INVALID_ARGUMENT
+/// the scene or node that is not there. A file without any triangle is PVT_INVALID_INPUT, and so is
+/// one that contradicts itself: counts, ranges and bounds are held against the data. One all of
+/// whose surface is masked away is PVT_NOTHING_INSIDE. Textures of masked materials are read as
+/// PNG, JPEG or WebP, by OpenImageIO (see pvtLoadImage), which only a file with such a texture
+/// opens.
 ///
 /// OBJ, PLY, STL, FBX and DAE are parsed by assimp in a process of its own, the program
 /// paravent-import, and what KHR_draco_mesh_compression holds by paravent-draco. They are looked
