@@ -27,8 +27,10 @@ static const pvtOption outputTable[] = {
              "scene"},
     {.name = "with-original",
      FIELD(PVT_OPTION_FLAG, withOriginal),
-     .help = "the original's nodes and meshes come out too, beside the ladder, whatever the "
-             "format: their geometry in world coordinates, without materials"},
+     .help =
+         "the original comes out too, with the ladder in its scene: of GLB and glTF everything, "
+         "with buffers and images beside the file taken in; of other formats the triangles, a "
+         "node a part, in world coordinates, without materials and all else"},
     {.name = "convention",
      FIELD(PVT_OPTION_CHOICE, generate.convention),
      .choices = conventionChoices,

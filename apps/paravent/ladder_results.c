@@ -70,7 +70,8 @@ pvtStatus pvtSaveLadder(pvtRun* run, const pvtLadderLine* options, const pvtLadd
     }
     pvtOriginalParts original = {0};
     pvtStatus status = PVT_OK;
-    if (options->withOriginal) {
+    const bool isGltf = options->withOriginal && pvtIsGltf(run->context, result->input);
+    if (options->withOriginal && !isGltf) {
         status = pvtCutOriginal(run, &result->model, &original);
     }
     if (status == PVT_OK) {
@@ -78,7 +79,9 @@ pvtStatus pvtSaveLadder(pvtRun* run, const pvtLadderLine* options, const pvtLadd
                                  .levelCount = ladder->count,
                                  .coverages = options->naming == PVT_NAMING_MSFT ? coverages : NULL,
                                  .others = original.items,
-                                 .otherCount = original.count};
+                                 .otherCount = original.count,
+                                 .original = isGltf ? result->input : NULL,
+                                 .scene = options->generate.scene};
         status = pvtSaveLevels(run->context, options->generate.output, &set);
     }
     pvtOriginalParts_Free(run, &original);

@@ -21,6 +21,12 @@ class GltfData
     /// are taken out of `document`, so that their text does not stay in memory.
     GltfData(const pvtLoadJob& job, Json& document, const GltfContainer& container);
 
+    /// All bytes of a buffer; null bytes: it has none.
+    Span GetBuffer(std::size_t index) const
+    {
+        return buffers_[index];
+    }
+
     /// The bytes of a buffer view, decompressed when it is compressed. Refuses a view that does
     /// not lie in its buffer.
     Span GetView(const Json& document, std::size_t view);
@@ -38,6 +44,9 @@ class GltfData
     std::vector<OwnedSource> files_;
     std::vector<Array<std::uint8_t>> decoded_;
 };
+
+/// Refuses what is no JSON.
+Json ParseGltfJson(const pvtLoadJob& job, const Span& text);
 
 /// What tinygltf makes of the checked document. Buffers, images, animations and cameras are left
 /// out: this room reads bytes itself, and needs no other. An accessor without a buffer view has a

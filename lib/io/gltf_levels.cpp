@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Levels of detail in glTF: the extension MSFT_lod, or plain nodes.
+#include "gltf_original.hpp"
 #include "gltf_save.hpp"
+
+#include <unistd.h>
 
 #include <vector>
 
@@ -41,6 +44,22 @@ void LinkLevels(const pvtLevelSet& set, tinygltf::Model& model)
     model.scenes[0].nodes.resize(set.otherCount + 1);
 }
 
+struct OpenFile {
+    OpenFile(pvtContext* context, const char* path)
+    {
+        pvt::Check(
+            pvtOpenSource(context, path, pvtDefaultLoadOptions().maxBytes, &descriptor, &size));
+    }
+    ~OpenFile()
+    {
+        close(descriptor);
+    }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+    int descriptor = -1;
+    std::size_t size = 0;
+};
+
 void WriteLevels(pvtContext* context, const pvtLevelSet& set, bool binary, pvtOutput* output)
 {
     const std::vector<pvtSaveItem> items = ListItems(set);
@@ -49,8 +68,18 @@ void WriteLevels(pvtContext* context, const pvtLevelSet& set, bool binary, pvtOu
     if (set.coverages != nullptr && set.levelCount > 1) {
         LinkLevels(set, model);
     }
-    const std::string bytes = pvt::SerializeGltf(context, model, binary);
-    pvtOutput_Write(output, bytes.data(), bytes.size());
+    const bool isAlone = set.original == nullptr;
+    const std::string bytes = pvt::SerializeGltf(context, model, binary || !isAlone);
+    if (isAlone) {
+        pvtOutput_Write(output, bytes.data(), bytes.size());
+        return;
+    }
+    const OpenFile file(context, set.original);
+    const pvtLoadOptions options = pvtDefaultLoadOptions();
+    const pvtLoadJob job = {context, &options, set.original, file.descriptor, file.size};
+    pvt::GltfOriginal original(job);
+    original.Append(bytes, set.scene);
+    original.Write(binary, output);
 }
 
 } // namespace
@@ -58,5 +87,6 @@ void WriteLevels(pvtContext* context, const pvtLevelSet& set, bool binary, pvtOu
 pvtStatus pvtWriteLevels(pvtContext* context, const pvtLevelSet* set, bool binary,
                          pvtOutput* output)
 {
-    return pvt::Guard(context, "the glTF", [&] { WriteLevels(context, *set, binary, output); });
+    const char* what = set->original != nullptr ? set->original : "the glTF";
+    return pvt::Guard(context, what, [&] { WriteLevels(context, *set, binary, output); });
 }

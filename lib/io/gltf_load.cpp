@@ -56,22 +56,6 @@ class PolledBytes
     const std::uint8_t* at_;
 };
 
-Json ParseJson(const pvtLoadJob& job, const Span& text)
-{
-    try {
-        return Json::parse(PolledBytes(job.context, text.bytes),
-                           PolledBytes(job.context, text.bytes + text.size));
-    } catch (const Json::exception& error) {
-        // "[json.exception.parse_error.101] parse error at line 1, ..."
-        const std::string what = error.what();
-        const std::size_t tag = what.find("] ");
-        char clean[512];
-        Refuse(job, "the JSON is not valid: %s",
-               pvtCleanText(what.c_str() + (tag == std::string::npos ? 0 : tag + 2), clean,
-                            sizeof clean));
-    }
-}
-
 class OwnedBuilder
 {
   public:
@@ -128,7 +112,7 @@ void PlaceInstances(const std::vector<GltfInstance>& instances,
 void LoadGltf(const pvtLoadJob& job, const pvtSource& source, pvtModel* model)
 {
     const GltfContainer container = OpenGltfContainer(job, source);
-    Json document = ParseJson(job, container.json);
+    Json document = ParseGltfJson(job, container.json);
     CheckGltfSchema(job, document);
     GltfData data(job, document, container);
     const tinygltf::Model parsed = ParseGltfModel(job, document);
@@ -159,6 +143,22 @@ void LoadGltf(const pvtLoadJob& job, const pvtSource& source, pvtModel* model)
 }
 
 } // namespace
+
+Json ParseGltfJson(const pvtLoadJob& job, const Span& text)
+{
+    try {
+        return Json::parse(PolledBytes(job.context, text.bytes),
+                           PolledBytes(job.context, text.bytes + text.size));
+    } catch (const Json::exception& error) {
+        // "[json.exception.parse_error.101] parse error at line 1, ..."
+        const std::string what = error.what();
+        const std::size_t tag = what.find("] ");
+        char clean[512];
+        Refuse(job, "the JSON is not valid: %s",
+               pvtCleanText(what.c_str() + (tag == std::string::npos ? 0 : tag + 2), clean,
+                            sizeof clean));
+    }
+}
 
 } // namespace pvt
 

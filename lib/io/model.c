@@ -45,6 +45,13 @@ typedef struct Head {
     size_t size;
 } Head;
 
+static bool ReadHead(int file, Head* head)
+{
+    const ssize_t got = pread(file, head->bytes, sizeof head->bytes, 0);
+    head->size = got < 0 ? 0 : (size_t)got;
+    return got >= 0;
+}
+
 static bool IsGlb(const Head* head)
 {
     return head->size >= 4 && memcmp(head->bytes, "glTF", 4) == 0;
@@ -108,12 +115,10 @@ static pvtStatus LoadOpenFile(const pvtLoadJob* job, pvtModel* model)
                        "%s: the file is empty; export the model again", job->path);
     }
     Head head;
-    const ssize_t got = pread(job->file, head.bytes, sizeof head.bytes, 0);
-    if (got < 0) {
+    if (!ReadHead(job->file, &head)) {
         return pvtFail(job->context, PVT_INVALID_INPUT, "%s cannot be read: %s", job->path,
                        strerror(errno));
     }
-    head.size = (size_t)got;
     if (IsGlb(&head) || IsJson(&head)) {
         return LoadGltf(job, model);
     }
@@ -151,4 +156,17 @@ pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* options, const
         pvtReportProgress(context, 1.0);
     }
     return status;
+}
+
+bool pvtIsGltf(pvtContext* context, const char* path)
+{
+    int file = -1;
+    size_t size = 0;
+    if (pvtOpenSource(context, path, SIZE_MAX, &file, &size) != PVT_OK) {
+        return false;
+    }
+    Head head;
+    const bool isGltf = ReadHead(file, &head) && (IsGlb(&head) || IsJson(&head));
+    close(file);
+    return isGltf;
 }

@@ -30,6 +30,10 @@ for format in png PNG; do
 done
 expect 0 "" generate "$boulder" "${quick[@]}" -o out.glb --preview out.png --slicer osmesa
 only sample.glb egl.glb osmesa.glb out.glb out.png out.PNG
+expect 0 "" ladder "$boulder" -o ladder.glb --views "$here/one_view.txt" --effort fast \
+    --errors 0.5,0.9,1.5 --preview ladder.png
+holds "a ladder's picture holds its levels" test "$(stat -c %s ladder.png)" -gt 60000
+rm ladder.glb ladder.png
 
 # A picture that cannot be written: the model was, and the message says so.
 ln -s /dev/full full.png

@@ -71,6 +71,9 @@ PVT_API pvtLoadOptions pvtDefaultLoadOptions(void);
 PVT_API pvtStatus pvtLoadModel(pvtContext* context, const pvtLoadOptions* options, const char* path,
                                pvtModel* model);
 PVT_API void pvtModel_Free(pvtContext* context, pvtModel* model);
+/// Whether the file begins as GLB or glTF does, whatever its name; false also when it cannot be
+/// read.
+PVT_API bool pvtIsGltf(pvtContext* context, const char* path);
 
 /// A number or a text to store with a node: under extras.paravent of glTF, and as the entry
 /// "paravent" of the metadata of Godot's nodes.
@@ -110,6 +113,11 @@ typedef struct pvtLevelSet {
     const double* coverages;
     const pvtSaveItem* others; ///< further nodes, in front of the levels
     size_t otherCount;
+    /// A GLB or glTF whose whole contents come first: nodes, meshes, materials, animations and
+    /// what this library does not know. Its buffers become one, and images beside it are taken in.
+    /// Null: none.
+    const char* original;
+    int scene; ///< of the original that the nodes join; −1: the default scene, or the first
 } pvtLevelSet;
 
 /// Writes .glb or .gltf, which alone have levels; else as pvtSaveModel does.
