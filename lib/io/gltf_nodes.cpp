@@ -268,9 +268,10 @@ class Walker
     // EXT_mesh_gpu_instancing: one instance for each element of its accessors, all of one count.
     void AddCopies(const GltfInstance& instance, const Json& attributes, const std::string& place)
     {
-        const Attribute translation = FindAttribute(attributes, "TRANSLATION", TINYGLTF_TYPE_VEC3);
-        const Attribute rotation = FindAttribute(attributes, "ROTATION", TINYGLTF_TYPE_VEC4);
-        const Attribute scale = FindAttribute(attributes, "SCALE", TINYGLTF_TYPE_VEC3);
+        const Attribute translation =
+            FindAttribute(attributes, "TRANSLATION", TINYGLTF_TYPE_VEC3, place);
+        const Attribute rotation = FindAttribute(attributes, "ROTATION", TINYGLTF_TYPE_VEC4, place);
+        const Attribute scale = FindAttribute(attributes, "SCALE", TINYGLTF_TYPE_VEC3, place);
         std::size_t count = 0;
         for (const Attribute* attribute : {&translation, &rotation, &scale}) {
             if (*attribute && count != 0 && (*attribute)->Count() != count) {
@@ -297,7 +298,8 @@ class Walker
 
     using Attribute = std::optional<GltfAccessor>;
 
-    Attribute FindAttribute(const Json& attributes, const char* name, int type) const
+    Attribute FindAttribute(const Json& attributes, const char* name, int type,
+                            const std::string& place) const
     {
         const auto found = attributes.find(name);
         if (found == attributes.end()) {
@@ -307,8 +309,9 @@ class Walker
         const bool isFloat = accessor.ComponentType() == TINYGLTF_COMPONENT_TYPE_FLOAT;
         const bool isFraction = accessor.IsNormalized() && type == TINYGLTF_TYPE_VEC4;
         if (!accessor.Is(type) || !(isFloat || isFraction)) {
-            Refuse(file_.job, "EXT_mesh_gpu_instancing: %s is a %s", name,
-                   accessor.Describe().c_str());
+            Refuse(file_.job, "%s.attributes.%s is a %s; it must be a %s of FLOAT%s", place.c_str(),
+                   name, accessor.Describe().c_str(), type == TINYGLTF_TYPE_VEC3 ? "VEC3" : "VEC4",
+                   type == TINYGLTF_TYPE_VEC3 ? "" : " or of a normalized type");
         }
         return accessor;
     }
