@@ -139,8 +139,8 @@ void ShiftReferences(Json& added, const Json& document, std::size_t offset)
 Json FindRoots(const Json& document)
 {
     std::vector<char> isChild(GetCount(document, "nodes"), 0);
-    for (const Json& node : document["nodes"]) {
-        for (const Json& child : node.value("children", Json::array())) {
+    for (std::size_t i = 0; i < isChild.size(); ++i) {
+        for (const Json& child : document["nodes"][i].value("children", Json::array())) {
             isChild[child.get<std::size_t>()] = 1;
         }
     }

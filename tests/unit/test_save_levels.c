@@ -239,6 +239,13 @@ static void an_original_without_a_scene_gets_one_with_its_roots(void** state)
     CheckJson(path, "'scenes':[{'nodes':[0,2]}]");
     CHECK_OK(f->context, pvtLoadModel(f->context, NULL, path, &f->model));
     assert_int_equal(f->model.partCount, 2);
+    pvtModel_Free(f->context, &f->model);
+    // And one with nothing in it.
+    WriteGlb(InFolder(&f->folder, "bare.glb"), "{'asset':{'version':'2.0'}}", NULL);
+    CHECK_OK(f->context, pvtSaveLevels(f->context, path, &levels.set));
+    CheckJson(path, "'scenes':[{'nodes':[0]}]");
+    CHECK_OK(f->context, pvtLoadModel(f->context, NULL, path, &f->model));
+    assert_int_equal(f->model.partCount, 1);
     FreeLevels(f->context, &levels);
 }
 
