@@ -44,8 +44,8 @@ endfunction()
 
 pvt_install_library(core PC paravent
     DESCRIPTION "${PROJECT_DESCRIPTION}"
-    HEADERS base.h evaluate.h image.h ladder.h mesh.h occluder.h occlusion.h output.h paravent.h section.h
-            voxel.h
+    HEADERS base.h evaluate.h image.h ladder.h mesh.h occluder.h occlusion.h output.h paravent.h
+            section.h separate.h voxel.h
     PRIVATE_LIBS -lm -pthread)
 if(PARAVENT_GL)
     pvt_install_library(gl PC paravent-gl

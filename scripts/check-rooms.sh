@@ -22,6 +22,7 @@ allowed() {
     section) echo "base mesh voxel section" ;;
     occlusion) echo "base mesh occlusion" ;;
     occluder) echo "base mesh voxel section occlusion occluder" ;;
+    separate) echo "base mesh voxel section occlusion occluder separate" ;;
     evaluate) echo "base mesh occlusion evaluate" ;;
     ladder) echo "base mesh voxel section occlusion occluder evaluate ladder" ;;
     gl) echo "base mesh voxel section occlusion gl" ;;

@@ -203,29 +203,54 @@ class Cutter
     }
 
   private:
-    // Of the box around all instances, cards included.
-    double GetLongestSide() const
-    {
+    struct Extent {
         double least[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
         double most[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-        for (const GltfInstance& instance : instances_) {
-            const Array<pvtVec3>& positions = meshes_.at(instance.mesh).mesh.positions;
-            const Transform& m = instance.transform;
-            for (std::size_t i = 0; i < positions.Size(); ++i) {
-                if (i % kPollPositions == 0) {
-                    Poll(file_.job.context);
-                }
-                const pvtVec3& p = positions[i];
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const double at = m[k] * p.x + m[4 + k] * p.y + m[8 + k] * p.z + m[12 + k];
-                    if (std::isfinite(at)) {
-                        least[k] = std::min(least[k], at);
-                        most[k] = std::max(most[k], at);
-                    }
+
+        double LongestSide() const
+        {
+            return std::max({most[0] - least[0], most[1] - least[1], most[2] - least[2], 0.0});
+        }
+    };
+
+    void Include(const GltfMesh& mesh, const Transform& m, Extent& extent) const
+    {
+        for (std::size_t i = 0; i < mesh.positions.Size(); ++i) {
+            if (i % kPollPositions == 0) {
+                Poll(file_.job.context);
+            }
+            const pvtVec3& p = mesh.positions[i];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double at = m[k] * p.x + m[4 + k] * p.y + m[8 + k] * p.z + m[12 + k];
+                if (std::isfinite(at)) {
+                    extent.least[k] = std::min(extent.least[k], at);
+                    extent.most[k] = std::max(extent.most[k], at);
                 }
             }
         }
-        return std::max({most[0] - least[0], most[1] - least[1], most[2] - least[2], 0.0});
+    }
+
+    // Of the box around all instances, cards included.
+    double GetLongestSide() const
+    {
+        Extent extent;
+        for (const GltfInstance& instance : instances_) {
+            Include(meshes_.at(instance.mesh).mesh, instance.transform, extent);
+        }
+        return extent.LongestSide();
+    }
+
+    // In the mesh's own space. Meshes that are kept are looked at by themselves, each with as many
+    // cells along its own longest side.
+    double GetCell(std::size_t index, const GltfMesh& mesh, double cell) const
+    {
+        const pvtLoadOptions& options = *file_.job.options;
+        if (!options.keepMeshes || options.maskedCell > 0.0) {
+            return cell / scales_.at(index);
+        }
+        Extent extent;
+        Include(mesh, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, extent);
+        return extent.LongestSide() / options.maskedResolution;
     }
 
     // False, and nothing is changed, when too much comes out.
@@ -237,7 +262,7 @@ class Cutter
             if (used.mesh.cards.Size() == 0) {
                 continue;
             }
-            const pvtCutRules rules = {cell / scales_.at(index), extraLevels, kMaxPieces};
+            const pvtCutRules rules = {GetCell(index, used.mesh, cell), extraLevels, kMaxPieces};
             MeshCutter cutter(file_.job.context, used.mesh, rules);
             if (!cutter.Cut((kMaxTriangles - triangles) / used.uses, kMaxCells - cells)) {
                 return false;

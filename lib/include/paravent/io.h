@@ -21,9 +21,9 @@ typedef struct pvtLoadOptions {
     const char* node; ///< only nodes of this name and what is below them; null: everything
     pvtMasked masked; ///< default PVT_MASKED_AUTO
     /// How closely masked textures are looked at: texels are taken together, as long as they stay
-    /// smaller than the model's longest side over this, and are opaque when all of them are.
-    /// Coarser means fewer triangles, and less of the opaque parts, never more. 1 to 65536; default
-    /// 1024.
+    /// smaller than the model's longest side over this (with keepMeshes: each mesh's own), and are
+    /// opaque when all of them are. Coarser means fewer triangles, and less of the opaque parts,
+    /// never more. 1 to 65536; default 1024.
     int maskedResolution;
     double maskedCell; ///< [wu] > 0: texels are taken together up to this size instead; default 0
     size_t maxBytes;   ///< of any one file; default 4 GiB

@@ -12,6 +12,7 @@
 #include <paravent/occlusion.h>
 #include <paravent/output.h>
 #include <paravent/section.h>
+#include <paravent/separate.h>
 #include <paravent/voxel.h>
 
 #endif
