@@ -3,6 +3,7 @@
 #include "generate.h"
 
 #include "command.h"
+#include "separate.h"
 #include "setup.h"
 #include "targets.h"
 
@@ -48,11 +49,14 @@ static pvtStatus Prepare(pvtRun* run, const pvtGenerateOptions* options, const c
     return status == PVT_OK ? pvtOpenSetup(run, options, setup) : status;
 }
 
-static pvtStatus Load(pvtRun* run, const pvtGenerateOptions* options, pvtGenerated* generated)
+static pvtStatus Load(pvtRun* run, pvtGenerateOptions* options, pvtGenerated* generated)
 {
     generated->prepared = pvtGetClock();
     const pvtStatus status = pvtLoadInput(run, options, generated->input, &generated->model);
     generated->loaded = pvtGetClock();
+    if (options->budget == 0) {
+        options->budget = pvtGetSeparateBudget(generated->model.partCount);
+    }
     return status;
 }
 
@@ -60,8 +64,14 @@ static pvtStatus Build(pvtRun* run, const pvtGenerateOptions* options, const pvt
                        pvtGenerated* generated)
 {
     const pvtBuildOptions build = pvtSetup_GetBuildOptions(setup, options);
-    const pvtStatus status = pvtBuildOccluder(run->context, &build, &generated->model.mesh,
-                                              &generated->occluder, &generated->stats);
+    pvtStatus status = PVT_OK;
+    if (options->separate) {
+        status = pvtBuildSeparately(run, &build, generated);
+    } else {
+        status = pvtBuildOccluder(run->context, &build, &generated->model.mesh,
+                                  &generated->occluder, &generated->stats);
+        generated->polygonCount = generated->occluder.loops.loopCount;
+    }
     generated->built = pvtGetClock();
     if (status == PVT_INVALID_INPUT || status == PVT_NOTHING_INSIDE || status == PVT_LIMIT) {
         // The stages know meshes, not files.
@@ -113,7 +123,7 @@ static pvtStatus Save(pvtRun* run, const pvtGenerateOptions* options, pvtGenerat
     return status;
 }
 
-static pvtStatus Generate(pvtRun* run, const pvtGenerateOptions* options, const pvtSetup* setup,
+static pvtStatus Generate(pvtRun* run, pvtGenerateOptions* options, const pvtSetup* setup,
                           pvtGenerated* generated)
 {
     pvtImage image = {0};
@@ -140,6 +150,7 @@ static pvtStatus Generate(pvtRun* run, const pvtGenerateOptions* options, const 
 static void Release(pvtRun* run, pvtSetup* setup, pvtGenerated* generated)
 {
     pvtOccluder_Free(run->context, &generated->occluder);
+    pvtSeparation_Free(run->context, &generated->separation);
     pvtModel_Free(run->context, &generated->model);
     pvtSetup_Close(run, setup);
 }
@@ -152,6 +163,9 @@ static int RunGenerate(int count, char* const* words)
     int exitCode = PVT_EXIT_DONE;
     if (!pvtReadCommandLine(&pvtGenerateSyntax, count, words, &options, &line, &exitCode)) {
         return exitCode;
+    }
+    if (options.separate && !pvtIsOptionGiven(&pvtGenerateSyntax, &line, "budget")) {
+        options.budget = 0;
     }
     pvtRun run;
     pvtSetup setup = {0};

@@ -10,6 +10,7 @@
 
 #include <paravent/gl.h>
 #include <paravent/io.h>
+#include <paravent/separate.h>
 
 enum { PVT_SLICER_AUTO, PVT_SLICER_SAMPLE, PVT_SLICER_EGL, PVT_SLICER_OSMESA };
 
@@ -17,7 +18,9 @@ enum { PVT_SLICER_AUTO, PVT_SLICER_SAMPLE, PVT_SLICER_EGL, PVT_SLICER_OSMESA };
 typedef struct pvtGenerateOptions {
     pvtCommonOptions common;
     const char *output, *stats, *preview;
-    int budget, resolution;
+    bool separate;
+    int budget; ///< 0 with `separate`, until the nodes are counted: none is given
+    int resolution;
     double error;    ///< [wu] 0: the resolution holds
     double deadline; ///< [s] 0: none
     pvtLength tolerance, smallestHole;
@@ -53,10 +56,17 @@ pvtBuildOptions pvtGetBuildOptions(const pvtGenerateOptions* options, const pvtV
 typedef struct pvtGenerated {
     const char* input;
     pvtModel model;
-    pvtOccluder occluder;
+    pvtOccluder occluder;     ///< with --separate only its mesh: all of them
+    pvtSeparation separation; ///< with --separate
+    size_t polygonCount;      ///< that the occluder's mesh holds
     pvtBuildStats stats;
     double began, prepared, loaded, built, previewed, saved; ///< [s] on the clock
 } pvtGenerated;
+
+/// What the node of an occluder tells about it.
+enum { PVT_OCCLUDER_EXTRA_COUNT = 11 };
+void pvtListExtras(const pvtGenerateOptions* options, const pvtBuildStats* stats, int budget,
+                   pvtExtra extras[PVT_OCCLUDER_EXTRA_COUNT]);
 
 /// The occluder's model file, with what made it under extras.paravent.
 pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,

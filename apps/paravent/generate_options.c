@@ -38,7 +38,7 @@ static const pvtOption outputTable[] = {
      FIELD(PVT_OPTION_CHOICE, convention),
      .choices = conventionChoices,
      .help = "the occluder's node is called NAME_occluder, or NAME-occonly as Godot's import "
-             "wants it; NAME is the input file's"},
+             "wants it; NAME is the input file's, or with --separate the node's"},
 };
 
 static const pvtOption occluderTable[] = {
@@ -47,7 +47,13 @@ static const pvtOption occluderTable[] = {
      .placeholder = "N",
      .least = 1,
      .most = 65535,
-     .help = "most triangles in the occluder"},
+     .help = "most triangles in the occluder; with --separate in all of them, each counted as "
+             "often as its mesh is instanced, and 16 a mesh node unless it is given"},
+    {.name = "separate",
+     FIELD(PVT_OPTION_FLAG, separate),
+     .help = "an occluder for each mesh node instead of one for all, named after it; nodes of one "
+             "mesh share it. They share the budget by what each could hide, and --resolution is "
+             "along each mesh's own longest side"},
     {.name = "resolution",
      FIELD(PVT_OPTION_INT, resolution),
      .placeholder = "N",
@@ -192,6 +198,7 @@ const pvtSyntax pvtGenerateSyntax = {
         "Examples:\n"
         "  paravent generate house.glb -o house_occluder.glb --ground --preview house.png\n"
         "  paravent generate bunny.glb -o bunny.ply --budget 53 --smallest-hole 6vx\n"
+        "  paravent generate city.glb -o city_occluders.glb --separate --budget 4000\n"
         "Exit codes: 0 done, 1 wrong command line, 2 invalid input, 3 feature missing here, "
         "4 output cannot be written, 5 nothing to occlude with, 6 limit reached, 130 cancelled.",
 };

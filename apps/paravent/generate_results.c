@@ -2,6 +2,7 @@
 // What `paravent generate` tells: the model's extras, the stats file, the summary.
 #include "generate.h"
 #include "json.h"
+#include "separate.h"
 #include "targets.h"
 #include "values.h"
 
@@ -11,30 +12,40 @@
 
 enum { NAME_SIZE = 256 };
 
-pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
-                          const pvtGenerated* generated)
+void pvtListExtras(const pvtGenerateOptions* options, const pvtBuildStats* stats, int budget,
+                   pvtExtra extras[PVT_OCCLUDER_EXTRA_COUNT])
 {
-    char stem[NAME_SIZE];
-    char name[NAME_SIZE + 16];
-    pvtGetStem(generated->input, stem, sizeof stem);
-    pvtMakeNodeName(stem, options->convention, name, sizeof name);
     static const char* const efforts[] = {"fast", "default", "best"};
-    const pvtBuildStats* stats = &generated->stats;
-    const pvtExtra extras[] = {
+    const pvtExtra all[PVT_OCCLUDER_EXTRA_COUNT] = {
         {"error_bound", stats->errorBound, NULL},
         {"tolerance", stats->tolerance, NULL},
         {"smallest_hole", stats->smallestHole, NULL},
         {"resolution", stats->resolution, NULL},
         {"voxel_size", stats->voxelSize, NULL},
-        {"budget", options->budget, NULL},
+        {"budget", budget, NULL},
         {"measure", stats->measure, NULL},
         {"measure_of_solid", stats->measureOfSolid, NULL},
         {"method", 0.0, options->method == PVT_METHOD_PAPER ? "paper" : "planar"},
         {"effort", 0.0, efforts[options->effort]},
         {"seed", (double)options->seed, NULL},
     };
-    const pvtSaveItem item = {name, &generated->occluder.mesh, extras,
-                              sizeof extras / sizeof *extras, NULL};
+    memcpy(extras, all, sizeof all);
+}
+
+pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
+                          const pvtGenerated* generated)
+{
+    if (options->separate) {
+        return pvtSaveSeparately(run, options, generated);
+    }
+    char stem[NAME_SIZE];
+    char name[NAME_SIZE + 16];
+    pvtGetStem(generated->input, stem, sizeof stem);
+    pvtMakeNodeName(stem, options->convention, name, sizeof name);
+    pvtExtra extras[PVT_OCCLUDER_EXTRA_COUNT];
+    pvtListExtras(options, &generated->stats, options->budget, extras);
+    const pvtSaveItem item = {name, &generated->occluder.mesh, extras, PVT_OCCLUDER_EXTRA_COUNT,
+                              NULL};
     return pvtSaveModel(run->context, options->output, &item, 1);
 }
 
@@ -142,7 +153,7 @@ static void WriteStats(pvtJson* json, const pvtRun* run, const pvtGenerateOption
     pvtJson_String(json, "input", generated->input);
     pvtJson_Integer(json, "triangles_in", (int64_t)generated->model.mesh.triangleCount);
     pvtJson_Integer(json, "triangles", (int64_t)generated->occluder.mesh.triangleCount);
-    pvtJson_Integer(json, "polygons", (int64_t)generated->occluder.loops.loopCount);
+    pvtJson_Integer(json, "polygons", (int64_t)generated->polygonCount);
     pvtJson_Integer(json, "resolution", stats->resolution);
     pvtJson_Number(json, "voxel_size", stats->voxelSize);
     pvtJson_Number(json, "error_bound", stats->errorBound);
@@ -151,6 +162,9 @@ static void WriteStats(pvtJson* json, const pvtRun* run, const pvtGenerateOption
     pvtJson_Number(json, "measure_of_solid", stats->measureOfSolid);
     pvtJson_Integer(json, "candidates", (int64_t)stats->candidateCount);
     pvtJson_Integer(json, "outside", (int64_t)stats->outside);
+    if (options->separate) {
+        pvtWriteSeparate(json, generated);
+    }
     WriteSeconds(json, generated);
     pvtJson_Integer(json, "peak_bytes", (int64_t)pvtRun_GetPeakBytes(run));
     pvtWriteOptions(json, &pvtGenerateSyntax, options);
@@ -188,11 +202,11 @@ static void PrintSeconds(pvtRun* run, const pvtGenerated* generated)
                      generated->saved - generated->previewed);
 }
 
-void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGenerated* generated)
+static void PrintOccluder(pvtRun* run, const pvtGenerateOptions* options,
+                          const pvtGenerated* generated)
 {
-    const pvtBuildStats* stats = &generated->stats;
     const size_t triangles = generated->occluder.mesh.triangleCount;
-    const size_t polygons = generated->occluder.loops.loopCount;
+    const size_t polygons = generated->polygonCount;
     const size_t trianglesIn = generated->model.mesh.triangleCount;
     char in[32];
     char out[32];
@@ -200,6 +214,16 @@ void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGe
                   options->output, pvtFormatCount(triangles, out), triangles == 1 ? "" : "s",
                   polygons, polygons == 1 ? "" : "s", pvtFormatCount(trianglesIn, in),
                   trianglesIn == 1 ? "" : "s");
+}
+
+void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGenerated* generated)
+{
+    const pvtBuildStats* stats = &generated->stats;
+    if (options->separate) {
+        pvtPrintSeparate(run, options, generated);
+    } else {
+        PrintOccluder(run, options, generated);
+    }
     if (stats->measureOfSolid > 0.0) {
         pvtReport_Say(&run->report, "  measure      %.1f %% of the solid's",
                       100.0 * stats->measure / stats->measureOfSolid);

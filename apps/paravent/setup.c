@@ -108,5 +108,6 @@ pvtStatus pvtLoadInput(pvtRun* run, const pvtGenerateOptions* options, const cha
     // What a voxel cannot tell apart need not be cut out; √3 voxels are within the error.
     load.maskedResolution = options->resolution;
     load.maskedCell = options->error > 0.0 ? options->error / sqrt(3.0) : 0.0;
+    load.keepMeshes = options->separate;
     return pvtLoadModel(run->context, &load, path, model);
 }

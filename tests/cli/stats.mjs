@@ -9,12 +9,15 @@ const fields = {
     candidates: "count", outside: "count", seconds: "object", peak_bytes: "count",
     options: "object", warnings: "array",
 };
-const options = ["convention", "budget", "resolution", "error", "tolerance", "method", "effort", "deadline",
+const options = ["convention", "separate", "budget", "resolution", "error", "tolerance", "method", "effort", "deadline",
     "views", "seed", "smallest_hole", "ground", "terrain", "up", "enclosed", "scene", "node", "masked",
     "slicer", "threads", "memory_limit"];
 const stages = ["load", "voxelize", "solid", "sections", "chains", "select", "refine", "check", "preview",
     "save", "total"];
 const problems = [];
+if (stats.options.separate) {
+    Object.assign(fields, { nodes: "count", nodes_without: "count", occluders: "array" });
+}
 
 function isKind(value, kind) {
     switch (kind) {
@@ -48,6 +51,18 @@ if (stats.triangles > stats.options.budget) problems.push("more triangles than t
 if (stats.inside_fraction > 1) problems.push("more than all is inside");
 if (stats.measure > stats.measure_of_solid * 1.0001) problems.push("hides more than the solid");
 if (stats.peak_bytes < 1e5) problems.push("no program is that small");
+
+for (const each of stats.occluders ?? []) {
+    const isMade = each.result === "made";
+    if (isMade !== (each.reason === null)) problems.push(`${each.node}: reason ${each.reason}`);
+    if (isMade !== each.triangles > 0) problems.push(`${each.node}: ${each.triangles} triangles`);
+    if (each.triangles > each.budget) problems.push(`${each.node}: more than its share`);
+    if (each.outside !== 0) problems.push(`${each.node}: reaches outside`);
+}
+if (stats.occluders !== undefined) {
+    const drawn = stats.occluders.reduce((sum, each) => sum + each.nodes * each.triangles, 0);
+    if (drawn !== stats.triangles) problems.push(`${drawn} triangles, not ${stats.triangles}`);
+}
 
 for (const problem of problems) console.error(`${process.argv[2]}: ${problem}`);
 process.exit(problems.length === 0 ? 0 : 1);

@@ -16,6 +16,7 @@ int main(int argc, char** argv)
     for (int i = 0; i < RECIPE_COUNT && !failed; ++i) {
         char path[4096];
         model->shapeCount = 0;
+        model->nodeCount = 0;
         RECIPES[i].make(model);
         (void)snprintf(path, sizeof path, "%s/%s.glb", argv[1], RECIPES[i].name);
         if (!WriteGlb(model, path)) {

@@ -316,6 +316,43 @@ static void MakeTree(Model* model)
     GrowBranch(AddShape(model, "tree", (Point){0, 0, 0}), &random, &trunk);
 }
 
+// A block between two heights, of half the widths given.
+static void AddBlock(Shape* shape, Point half, double bottom, double top)
+{
+    const Point p[8] = {{-half.x, bottom, half.z}, {-half.x, bottom, -half.z},
+                        {half.x, bottom, -half.z}, {half.x, bottom, half.z},
+                        {-half.x, top, half.z},    {-half.x, top, -half.z},
+                        {half.x, top, -half.z},    {half.x, top, half.z}};
+    AddBox(shape, p);
+}
+
+// Two closed meshes and one without an inside, as seven nodes: turned, scaled, mirrored, and with
+// names that are given twice, look like made-up ones, are missing, or are no ASCII.
+static void MakeYard(Model* model)
+{
+    Shape* tower = AddShape(model, "tower", (Point){0, 0, 0});
+    AddBlock(tower, (Point){1.5, 0, 1.25}, 0.0, 1.5);
+    AddBlock(tower, (Point){0.75, 0, 0.5}, 1.5, 4.0);
+    Shape* wedge = AddShape(model, "wedge", (Point){0, 0, 0});
+    const Point slanted[8] = {{-1, 0, 0.5}, {-1, 0, -0.5},    {1.5, 0, -0.5}, {1.5, 0, 0.5},
+                              {-1, 2, 0.5}, {-1, 2.25, -0.5}, {0, 1, -0.5},   {0, 1, 0.5}};
+    AddBox(wedge, slanted);
+    Shape* banner = AddShape(model, "banner", (Point){0, 0, 0});
+    AddPanel(banner, (Point){0, 0, 0}, (Point){2, 0, 0}, (Point){2, 1, 0}, (Point){0, 1, 0});
+    const Node nodes[] = {
+        {"tower", 0, {1, 1, 1}, 0, {0, 0, 0}},
+        {"tower", 0, {1, 1, 1}, 0, {6, 0, -2}},
+        {"tower_2", 0, {1.5, 1.5, 1.5}, 1, {-6, 0, 0}},
+        {"", 1, {1, 1, 1}, 2, {0, 0, 4}},
+        {"wedge", 1, {-1, 1, 1}, 0, {5, 0, 4}},
+        {"M\303\244uerchen /\346\235\261$noimp", 1, {1, 2, 0.5}, 3, {-5, 0, 5}},
+        {"banner", 2, {1, 1, 1}, 0, {0, 4, 0}},
+    };
+    for (size_t i = 0; i < sizeof nodes / sizeof *nodes; ++i) {
+        AddNode(model, &nodes[i]);
+    }
+}
+
 const Recipe* FindRecipe(const char* name)
 {
     for (int i = 0; i < RECIPE_COUNT; ++i) {
@@ -328,5 +365,5 @@ const Recipe* FindRecipe(const char* name)
 
 const Recipe RECIPES[RECIPE_COUNT] = {
     {"boulder", MakeBoulder}, {"torus", MakeTorus}, {"house", MakeHouse},
-    {"sheet", MakeSheet},     {"tree", MakeTree},
+    {"sheet", MakeSheet},     {"tree", MakeTree},   {"yard", MakeYard},
 };

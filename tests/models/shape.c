@@ -18,6 +18,26 @@ Shape* AddShape(Model* model, const char* name, Point translation)
     return shape;
 }
 
+void AddNode(Model* model, const Node* node)
+{
+    assert(model->nodeCount < MODEL_MAX_NODES);
+    model->nodes[model->nodeCount++] = *node;
+}
+
+int GetNodeCount(const Model* model)
+{
+    return model->nodeCount > 0 ? model->nodeCount : model->shapeCount;
+}
+
+Node GetNode(const Model* model, int i)
+{
+    if (model->nodeCount > 0) {
+        return model->nodes[i];
+    }
+    const Shape* shape = &model->shapes[i];
+    return (Node){shape->name, i, {1.0, 1.0, 1.0}, 0, shape->translation};
+}
+
 static float Snap(double value)
 {
     return (float)(floor(value * 4096.0 + 0.5) / 4096.0);
@@ -86,17 +106,36 @@ static size_t GetIndexBytes(const Shape* shape)
     return (shape->triangleCount * sizeof shape->indices[0] + 3) / 4 * 4;
 }
 
+static void PrintNode(Text* json, const Node* node)
+{
+    static const double s = 0.70710678118654752;
+    static const double turns[4][2] = {{0.0, 1.0}, {s, s}, {1.0, 0.0}, {s, -s}};
+    const Point t = node->translation;
+    const Point k = node->scale;
+    Print(json, "{\"mesh\":%d", node->shape);
+    if (node->name[0] != '\0') {
+        Print(json, ",\"name\":\"%s\"", node->name);
+    }
+    if (t.x != 0.0 || t.y != 0.0 || t.z != 0.0) {
+        Print(json, ",\"translation\":[%.9g,%.9g,%.9g]", t.x, t.y, t.z);
+    }
+    if (node->quarters != 0) {
+        const double* turn = turns[node->quarters];
+        Print(json, ",\"rotation\":[0,%.17g,0,%.17g]", turn[0], turn[1]);
+    }
+    if (k.x != 1.0 || k.y != 1.0 || k.z != 1.0) {
+        Print(json, ",\"scale\":[%.9g,%.9g,%.9g]", k.x, k.y, k.z);
+    }
+    Print(json, "}");
+}
+
 static void PrintNodes(Text* json, const Model* model)
 {
     Print(json, "\"nodes\":[");
-    for (int i = 0; i < model->shapeCount; ++i) {
-        const Shape* shape = &model->shapes[i];
-        const Point t = shape->translation;
-        Print(json, "%s{\"mesh\":%d,\"name\":\"%s\"", i > 0 ? "," : "", i, shape->name);
-        if (t.x != 0.0 || t.y != 0.0 || t.z != 0.0) {
-            Print(json, ",\"translation\":[%.9g,%.9g,%.9g]", t.x, t.y, t.z);
-        }
-        Print(json, "}");
+    for (int i = 0; i < GetNodeCount(model); ++i) {
+        const Node node = GetNode(model, i);
+        Print(json, "%s", i > 0 ? "," : "");
+        PrintNode(json, &node);
     }
     Print(json, "],\"meshes\":[");
     for (int i = 0; i < model->shapeCount; ++i) {
@@ -177,7 +216,7 @@ bool WriteGlb(const Model* model, const char* path)
     Text json = {.length = 0};
     Print(&json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"paravent make_models\"},"
                  "\"scene\":0,\"scenes\":[{\"nodes\":[");
-    for (int i = 0; i < model->shapeCount; ++i) {
+    for (int i = 0; i < GetNodeCount(model); ++i) {
         Print(&json, "%s%d", i > 0 ? "," : "", i);
     }
     Print(&json, "]}],");

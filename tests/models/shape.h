@@ -11,9 +11,14 @@ typedef struct Point {
     double x, y, z; // [m], y up
 } Point;
 
-enum { SHAPE_MAX_POINTS = 8192, SHAPE_MAX_TRIANGLES = 8192, MODEL_MAX_SHAPES = 4 };
+enum {
+    SHAPE_MAX_POINTS = 8192,
+    SHAPE_MAX_TRIANGLES = 8192,
+    MODEL_MAX_SHAPES = 4,
+    MODEL_MAX_NODES = 8
+};
 
-/// One node with one mesh. Counter-clockwise from outside.
+/// One mesh, with one node unless the model has nodes of its own. Counter-clockwise from outside.
 typedef struct Shape {
     const char* name;
     Point translation; // of the node; the mesh is relative to it
@@ -22,12 +27,27 @@ typedef struct Shape {
     uint32_t pointCount, triangleCount;
 } Shape;
 
+/// An instance of a shape: scaled, then turned around y by quarters from z to x, then moved.
+typedef struct Node {
+    const char* name; // "" has none in the file
+    int shape;
+    Point scale;
+    int quarters;
+    Point translation;
+} Node;
+
 typedef struct Model {
     Shape shapes[MODEL_MAX_SHAPES];
     int shapeCount;
+    Node nodes[MODEL_MAX_NODES];
+    int nodeCount; // 0: one for each shape
 } Model;
 
 Shape* AddShape(Model* model, const char* name, Point translation);
+void AddNode(Model* model, const Node* node);
+/// Node i of the model, or the one that shape i has.
+Node GetNode(const Model* model, int i);
+int GetNodeCount(const Model* model);
 /// Rounds to 1/4096 m, so that no machine's sine can change a file. Returns the point's index.
 uint32_t AddPoint(Shape* shape, Point point);
 void AddTriangle(Shape* shape, uint32_t a, uint32_t b, uint32_t c);
