@@ -109,8 +109,8 @@ static bool IsSet(const pvtOption* option, const pvtGenerateOptions* options)
     if (strcmp(option->name, "deadline") == 0) {
         return options->deadline > 0.0;
     }
-    if (strcmp(option->name, "resolution") == 0) {
-        return options->error == 0.0;
+    if (strcmp(option->name, "resolution") == 0 && options->error > 0.0) {
+        return false;
     }
     const void* field = (const char*)options + option->offset;
     switch (option->kind) {

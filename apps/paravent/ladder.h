@@ -24,9 +24,10 @@ typedef struct pvtLadderLine {
 extern const pvtSyntax pvtLadderSyntax;
 
 pvtLadderLine pvtDefaultLadderLine(void);
-/// What the line says about levels, with its lists read and checked against each other.
-/// PVT_INVALID_ARGUMENT names the option. `ladder->build` is left alone.
-pvtStatus pvtReadLevels(pvtRun* run, const pvtLadderLine* options, const pvtParsedLine* line,
+/// What the line says about levels, with its lists read and checked against each other; their
+/// number goes into the line too. PVT_INVALID_ARGUMENT names the option. `ladder->build` is left
+/// alone.
+pvtStatus pvtReadLevels(pvtRun* run, pvtLadderLine* options, const pvtParsedLine* line,
                         pvtLadderOptions* ladder);
 
 /// Everything that a run of ladder has made.

@@ -250,7 +250,7 @@ static pvtStatus CountLevels(pvtRun* run, const pvtLadderLine* options, const pv
     return PVT_OK;
 }
 
-pvtStatus pvtReadLevels(pvtRun* run, const pvtLadderLine* options, const pvtParsedLine* line,
+pvtStatus pvtReadLevels(pvtRun* run, pvtLadderLine* options, const pvtParsedLine* line,
                         pvtLadderOptions* ladder)
 {
     int errorCount = 0;
@@ -265,6 +265,7 @@ pvtStatus pvtReadLevels(pvtRun* run, const pvtLadderLine* options, const pvtPars
     if (status == PVT_OK) {
         status = CountLevels(run, options, line, errorCount, budgetCount, &ladder->levelCount);
     }
+    options->levels = ladder->levelCount;
     if (status == PVT_OK && errorCount > 0 &&
         pvtIsOptionGiven(&pvtLadderSyntax, line, "resolution")) {
         status =

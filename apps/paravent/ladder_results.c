@@ -152,6 +152,14 @@ static void WriteSeconds(pvtJson* json, const pvtLadderResult* result)
     pvtJson_EndObject(json);
 }
 
+// The resolution counts only where no errors set the voxels' size.
+static void WriteLine(pvtJson* json, const pvtLadderLine* options)
+{
+    pvtLadderLine line = *options;
+    line.generate.resolution = options->errors != NULL ? -1 : options->generate.resolution;
+    pvtWriteOptions(json, &pvtLadderSyntax, &line.generate);
+}
+
 static void WriteStats(pvtJson* json, const pvtRun* run, const pvtLadderLine* options,
                        const pvtLadderResult* result)
 {
@@ -167,7 +175,7 @@ static void WriteStats(pvtJson* json, const pvtRun* run, const pvtLadderLine* op
     pvtJson_EndArray(json);
     WriteSeconds(json, result);
     pvtJson_Integer(json, "peak_bytes", (int64_t)pvtRun_GetPeakBytes(run));
-    pvtWriteOptions(json, &pvtLadderSyntax, &options->generate);
+    WriteLine(json, options);
     pvtJson_BeginArray(json, "warnings");
     for (size_t i = 0; i < run->report.warningCount; ++i) {
         pvtJson_String(json, NULL, run->report.warnings[i]);

@@ -22,6 +22,8 @@ const levels = stats.levels;
 const screen = stats.options;
 
 assert.equal(levels.length, Number(levelCount));
+assert.equal(screen.levels, (screen.errors ?? screen.budgets)?.split(",").length ?? screen.levels);
+assert.equal(screen.resolution === null, screen.errors !== null, "one of them sets the voxels");
 assert(rises(levels.map(level => level.error_bound)), "errors grow");
 assert(rises(levels.map(level => level.distance)), "so do distances");
 assert(rises(levels.map(level => -level.triangles)), "triangles fall");
