@@ -15,7 +15,7 @@ int AddAttribute(draco::PointCloud& cloud, draco::GeometryAttribute::Type type, 
 {
     draco::GeometryAttribute attribute;
     const auto size = static_cast<std::int64_t>(sizeof(float)) * components;
-    attribute.Init(type, nullptr, static_cast<std::int8_t>(components), draco::DT_FLOAT32, false,
+    attribute.Init(type, nullptr, static_cast<std::uint8_t>(components), draco::DT_FLOAT32, false,
                    size, 0);
     const int id = cloud.AddAttribute(attribute, true, static_cast<std::uint32_t>(count));
     for (std::uint32_t i = 0; i < count; ++i) {
