@@ -33,7 +33,7 @@ static pvtStatus DrawLevel(pvtRun* run, pvtGl* gl, const pvtPreviewOptions* prev
         return status;
     }
     char text[96];
-    (void)snprintf(text, sizeof text, "LOD%zu: %zu TRIANGLES, ERROR %.3g, FROM %.3g", index,
+    (void)snprintf(text, sizeof text, "LOD%zu: %zu TRIANGLES, ERROR %.3g, FROM %.4g", index,
                    level->occluder.mesh.triangleCount, level->stats.errorBound, level->distance);
     const pvtLettering lettering = {2, {INK[0], INK[1], INK[2]}};
     CopyBlock(&block, sheet, at);
