@@ -295,6 +295,7 @@ void GltfDecoder::RefuseIfAllOmitted() const
     if (drawn_ > 0 || blended_ + masked_ + unplaced_ == 0) {
         return;
     }
+    WarnOfMasks();
     Refuse(file_.job,
            "nothing is left: %zu primitives with masked and %zu with blended materials were left "
            "out, and %zu without a POSITION; %s",

@@ -268,11 +268,16 @@ GltfMasks::Texture& GltfMasks::FindTexture(const Key& key)
     try {
         LoadTexture(key, texture);
     } catch (const Failure& failure) {
+        texture.failure = pvtContext_GetMessage(file_.job.context);
         // The model can do without the image; not so what concerns the whole run.
+        if (failure.status == PVT_LIMIT) {
+            throw Failure{pvtFail(file_.job.context, PVT_LIMIT,
+                                  "%s; --masked skip does without the image",
+                                  texture.failure.c_str())};
+        }
         if (failure.status != PVT_INVALID_INPUT && failure.status != PVT_UNSUPPORTED) {
             throw;
         }
-        texture.failure = pvtContext_GetMessage(file_.job.context);
     }
     return texture;
 }

@@ -10,6 +10,7 @@
 #include "base/context.h"
 
 #include <dlfcn.h>
+#include <math.h>
 #include <paravent/io.h>
 #include <paravent/output.h>
 #include <stdio.h>
@@ -181,22 +182,26 @@ static pvtStatus ReadAlphaRows(pvtContext* context, const pvtImageModule* module
     return PVT_OK;
 }
 
-// Deflate makes at most 1032 bytes of one, and a byte is at most 8 pixels of an image with a
-// palette: what claims more lies, and gets no memory.
-static pvtStatus CheckShape(pvtContext* context, const char* label, const pvtImageShape* shape,
-                            size_t size)
+// What a PNG can hold at most: deflate makes up to 1032 bytes of one, and a byte is at most 8
+// pixels of an image with a palette.
+static double GetMostPixels(size_t size)
 {
-    const double count = (double)shape->width * shape->height;
+    return 8.0 * 1032.0 * (double)size;
+}
+
+// What claims more than it can hold gets no memory.
+static pvtStatus CheckShape(pvtContext* context, const char* format, const char* label,
+                            const pvtImageShape* shape, size_t size)
+{
     if (shape->width > PVT_MAX_ALPHA_SIDE || shape->height > PVT_MAX_ALPHA_SIDE) {
         return pvtFail(context, PVT_INVALID_INPUT,
-                       "%s has %d × %d pixels; at most %d a side are "
-                       "read",
-                       label, shape->width, shape->height, PVT_MAX_ALPHA_SIDE);
+                       "%s has %d × %d pixels; at most %d a side are read", label, shape->width,
+                       shape->height, PVT_MAX_ALPHA_SIDE);
     }
-    if (count > 8.0 * 1032.0 * (double)size) {
+    if (strcmp(format, "png") == 0 && (double)shape->width * shape->height > GetMostPixels(size)) {
         return pvtFail(context, PVT_INVALID_INPUT,
-                       "%s claims %d × %d pixels, but has only %zu bytes", label, shape->width,
-                       shape->height, size);
+                       "%s claims %d × %d pixels, which its %zu bytes cannot hold", label,
+                       shape->width, shape->height, size);
     }
     return PVT_OK;
 }
@@ -221,11 +226,60 @@ static pvtStatus ReadAlpha(pvtContext* context, const pvtImageModule* module, vo
     return status;
 }
 
+static double GetBytes(const uint8_t* bytes, int count, bool isBig)
+{
+    double value = 0.0;
+    for (int i = 0; i < count; ++i) {
+        value = 256.0 * value + bytes[isBig ? i : count - 1 - i];
+    }
+    return value;
+}
+
+// [bytes] What the decoder will hold beside its result, by the image's header: WebP is decoded as
+// a whole when it is opened, and so is an interlaced PNG with its first row.
+static double EstimateDecoder(const char* format, const uint8_t* bytes, size_t size)
+{
+    enum { HEADER = 30, INTERLACE = 28 };
+    if (size < HEADER) {
+        return 0.0;
+    }
+    if (strcmp(format, "png") == 0) {
+        const double pixels = GetBytes(bytes + 16, 4, true) * GetBytes(bytes + 20, 4, true);
+        return bytes[INTERLACE] != 0 ? 8.0 * fmin(pixels, GetMostPixels(size)) : 0.0;
+    }
+    const double side = 16384.0;
+    double width = side, height = side;
+    if (memcmp(bytes + 12, "VP8X", 4) == 0) {
+        width = GetBytes(bytes + 24, 3, false) + 1.0;
+        height = GetBytes(bytes + 27, 3, false) + 1.0;
+    } else if (memcmp(bytes + 12, "VP8L", 4) == 0) {
+        const double bits = GetBytes(bytes + 21, 4, false);
+        width = fmod(bits, side) + 1.0;
+        height = fmod(floor(bits / side), side) + 1.0;
+    } else if (memcmp(bytes + 12, "VP8 ", 4) == 0) {
+        width = fmod(GetBytes(bytes + 26, 2, false), side);
+        height = fmod(GetBytes(bytes + 28, 2, false), side);
+    }
+    return 8.0 * width * height;
+}
+
+static pvtStatus CheckDecoder(pvtContext* context, const char* format, const char* label,
+                              const uint8_t* bytes, size_t size)
+{
+    const double needed = EstimateDecoder(format, bytes, size);
+    char purpose[PVT_IMAGE_TEXT_SIZE];
+    (void)snprintf(purpose, sizeof purpose, "%s: decoding the image", label);
+    return pvtCheckMemory(context, needed < (double)SIZE_MAX ? (size_t)needed : SIZE_MAX, purpose);
+}
+
 static pvtStatus DecodeAlpha(pvtContext* context, const char* format, const char* label,
                              const uint8_t* bytes, size_t size, pvtAlpha* alpha)
 {
     const pvtImageModule* module = NULL;
-    pvtStatus status = OpenImageModule(context, label, &module);
+    pvtStatus status = CheckDecoder(context, format, label, bytes, size);
+    if (status == PVT_OK) {
+        status = OpenImageModule(context, label, &module);
+    }
     if (status != PVT_OK) {
         return status;
     }
@@ -237,7 +291,7 @@ static pvtStatus DecodeAlpha(pvtContext* context, const char* format, const char
         return pvtFail(context, PVT_INVALID_INPUT, "%s cannot be read: %s", label,
                        pvtCleanText(error.text, text, sizeof text));
     }
-    status = CheckShape(context, label, &shape, size);
+    status = CheckShape(context, format, label, &shape, size);
     if (status == PVT_OK && shape.hasAlpha) {
         alpha->width = shape.width;
         alpha->height = shape.height;

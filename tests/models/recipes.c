@@ -3,6 +3,8 @@
 // with; models/README.md says which.
 #include "recipes.h"
 
+#include "masked_recipes.h"
+
 #include "base/random.h"
 
 #include <math.h>
@@ -364,6 +366,8 @@ const Recipe* FindRecipe(const char* name)
 }
 
 const Recipe RECIPES[RECIPE_COUNT] = {
-    {"boulder", MakeBoulder}, {"torus", MakeTorus}, {"house", MakeHouse},
-    {"sheet", MakeSheet},     {"tree", MakeTree},   {"yard", MakeYard},
+    {"boulder", MakeBoulder}, {"torus", MakeTorus},
+    {"house", MakeHouse},     {"sheet", MakeSheet},
+    {"tree", MakeTree},       {"yard", MakeYard},
+    {"fence", MakeFence},     {"leafy_tree", MakeLeafyTree},
 };

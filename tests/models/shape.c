@@ -15,6 +15,7 @@ Shape* AddShape(Model* model, const char* name, Point translation)
     shape->translation = translation;
     shape->pointCount = 0;
     shape->triangleCount = 0;
+    shape->isMasked = false;
     return shape;
 }
 
@@ -77,6 +78,17 @@ void AddPanel(Shape* shape, Point a, Point b, Point c, Point d)
     AddQuad(shape, first, first + 1, first + 2, first + 3);
 }
 
+void AddCard(Shape* shape, const Point corners[4], double repeatU, double repeatV)
+{
+    assert(shape->isMasked);
+    const uint32_t first = shape->pointCount;
+    AddPanel(shape, corners[0], corners[1], corners[2], corners[3]);
+    for (uint32_t i = 0; i < 4; ++i) {
+        shape->texCoords[first + i][0] = Snap(i == 1 || i == 2 ? repeatU : 0.0);
+        shape->texCoords[first + i][1] = Snap(i >= 2 ? repeatV : 0.0);
+    }
+}
+
 enum { TEXT_SIZE = 16384 };
 
 typedef struct Text {
@@ -129,6 +141,46 @@ static void PrintNode(Text* json, const Node* node)
     Print(json, "}");
 }
 
+static size_t GetTexCoordBytes(const Shape* shape)
+{
+    return shape->pointCount * sizeof shape->texCoords[0];
+}
+
+static int CountMasked(const Model* model, int shapeCount)
+{
+    int count = 0;
+    for (int i = 0; i < shapeCount; ++i) {
+        count += model->shapes[i].isMasked ? 1 : 0;
+    }
+    return count;
+}
+
+// What belongs to masks stands behind what every shape has: two views and two accessors each.
+static void PrintMaterials(Text* json, const Model* model)
+{
+    const int count = CountMasked(model, model->shapeCount);
+    if (count == 0) {
+        return;
+    }
+    Print(json, ",\"materials\":[");
+    for (int i = 0; i < count; ++i) {
+        Print(json,
+              "%s{\"alphaMode\":\"MASK\",\"doubleSided\":true,\"pbrMetallicRoughness\":{"
+              "\"baseColorTexture\":{\"index\":%d}}}",
+              i > 0 ? "," : "", i);
+    }
+    Print(json, "],\"textures\":[");
+    for (int i = 0; i < count; ++i) {
+        Print(json, "%s{\"source\":%d}", i > 0 ? "," : "", i);
+    }
+    Print(json, "],\"images\":[");
+    for (int i = 0; i < count; ++i) {
+        Print(json, "%s{\"mimeType\":\"image/png\",\"bufferView\":%d}", i > 0 ? "," : "",
+              2 * model->shapeCount + 2 * i + 1);
+    }
+    Print(json, "]");
+}
+
 static void PrintNodes(Text* json, const Model* model)
 {
     Print(json, "\"nodes\":[");
@@ -139,10 +191,16 @@ static void PrintNodes(Text* json, const Model* model)
     }
     Print(json, "],\"meshes\":[");
     for (int i = 0; i < model->shapeCount; ++i) {
-        Print(json,
-              "%s{\"name\":\"%s\",\"primitives\":[{\"attributes\":{\"POSITION\":%d},"
-              "\"indices\":%d}]}",
-              i > 0 ? "," : "", model->shapes[i].name, 2 * i, 2 * i + 1);
+        Print(json, "%s{\"name\":\"%s\",\"primitives\":[{\"attributes\":{\"POSITION\":%d",
+              i > 0 ? "," : "", model->shapes[i].name, 2 * i);
+        const int masked = CountMasked(model, i);
+        if (model->shapes[i].isMasked) {
+            Print(json, ",\"TEXCOORD_0\":%d},\"material\":%d", 2 * model->shapeCount + masked,
+                  masked);
+        } else {
+            Print(json, "}");
+        }
+        Print(json, ",\"indices\":%d}]}", 2 * i + 1);
     }
     Print(json, "]");
 }
@@ -169,6 +227,13 @@ static void PrintAccessors(Text* json, const Model* model)
         Print(json, "{\"bufferView\":%d,\"componentType\":5123,\"count\":%u,\"type\":\"SCALAR\"}",
               2 * i + 1, 3 * shape->triangleCount);
     }
+    for (int i = 0, masked = 0; i < model->shapeCount; ++i) {
+        if (model->shapes[i].isMasked) {
+            Print(json,
+                  ",{\"bufferView\":%d,\"componentType\":5126,\"count\":%u,\"type\":\"VEC2\"}",
+                  2 * model->shapeCount + 2 * masked++, model->shapes[i].pointCount);
+        }
+    }
     Print(json, "]");
 }
 
@@ -186,6 +251,18 @@ static size_t PrintBufferViews(Text* json, const Model* model)
               i > 0 ? "," : "", offset, positions, offset + positions,
               shape->triangleCount * sizeof shape->indices[0]);
         offset += positions + GetIndexBytes(shape);
+    }
+    for (int i = 0; i < model->shapeCount; ++i) {
+        const Shape* shape = &model->shapes[i];
+        if (shape->isMasked) {
+            uint8_t png[MASK_PNG_ROOM];
+            const size_t texCoords = GetTexCoordBytes(shape), image = EncodeMask(&shape->mask, png);
+            Print(json,
+                  ",{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34962},"
+                  "{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}",
+                  offset, texCoords, offset + texCoords, image);
+            offset += texCoords + (image + 3) / 4 * 4;
+        }
     }
     Print(json, "],\"buffers\":[{\"byteLength\":%zu}]", offset);
     return offset;
@@ -208,6 +285,15 @@ static bool WriteBinary(FILE* file, const Model* model)
                fwrite(shape->indices, indices, 1, file) == 1 &&
                fwrite(zeros, 1, padding, file) == padding;
     }
+    for (int i = 0; i < model->shapeCount; ++i) {
+        const Shape* shape = &model->shapes[i];
+        if (shape->isMasked) {
+            uint8_t png[MASK_PNG_ROOM + 4] = {0};
+            const size_t image = (EncodeMask(&shape->mask, png) + 3) / 4 * 4;
+            good = good && fwrite(shape->texCoords, GetTexCoordBytes(shape), 1, file) == 1 &&
+                   fwrite(png, image, 1, file) == 1;
+        }
+    }
     return good;
 }
 
@@ -221,6 +307,7 @@ bool WriteGlb(const Model* model, const char* path)
     }
     Print(&json, "]}],");
     PrintNodes(&json, model);
+    PrintMaterials(&json, model);
     PrintAccessors(&json, model);
     const size_t binary = PrintBufferViews(&json, model);
     Print(&json, "}");

@@ -3,6 +3,8 @@
 #ifndef PVT_TEST_SHAPE_H
 #define PVT_TEST_SHAPE_H
 
+#include "mask.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -25,6 +27,9 @@ typedef struct Shape {
     float positions[SHAPE_MAX_POINTS][3];
     uint16_t indices[SHAPE_MAX_TRIANGLES][3];
     uint32_t pointCount, triangleCount;
+    bool isMasked;                        // its material has `mask` as an alpha mask
+    float texCoords[SHAPE_MAX_POINTS][2]; // when it is masked
+    Mask mask;
 } Shape;
 
 /// An instance of a shape: scaled, then turned around y by quarters from z to x, then moved.
@@ -54,6 +59,9 @@ void AddTriangle(Shape* shape, uint32_t a, uint32_t b, uint32_t c);
 void AddQuad(Shape* shape, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
 /// Four points of its own.
 void AddPanel(Shape* shape, Point a, Point b, Point c, Point d);
+/// The same with texture coordinates: (0, 0) at the first, (repeatU, 0) at the second corner, and
+/// so on. Only for masked shapes, all of whose points come from here.
+void AddCard(Shape* shape, const Point corners[4], double repeatU, double repeatV);
 /// False when the file cannot be written.
 bool WriteGlb(const Model* model, const char* path);
 
