@@ -3,15 +3,23 @@
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 command -v node >/dev/null || skip "needs node to read the scenes"
 
-# scene NAME ARGUMENT…: the scene of a run holds what the model of the same run holds.
+# scene NAME ARGUMENT…: the scene of a run holds what the model of the same run holds; without a
+# name the nodes are called as the model's are.
 scene() {
     local name="$1"
     shift
     checks=$((checks + 1))
     expect 0 "" generate "$@" -o scene.tscn
     expect 0 "" generate "$@" -o model.glb
-    node "$here/tscn.mjs" scene.tscn model.glb "$name" 2>problems ||
+    node "$here/tscn.mjs" scene.tscn model.glb ${name:+"$name"} 2>problems ||
         fail "$*: $(cat problems)"
+}
+
+# occluders ARGUMENT…: Godot's import makes occluders of the model's nodes.
+occluders() {
+    checks=$((checks + 1))
+    expect 0 "" generate "$@" -o model.glb --convention godot
+    node "$here/occonly.mjs" model.glb 2>problems || fail "$*: $(cat problems)"
 }
 
 scene boulder_occluder "$models/boulder.glb" "${quick[@]}"
@@ -29,9 +37,14 @@ holds "the same bytes for any number of threads" cmp scene.tscn again.tscn
 mkdir in
 for name in 'a$noimp' 'b$colonly_c' 'noimp-colonly' 'c.v2'; do
     cp "$models/boulder.glb" "in/$name.glb"
-    expect 0 "" generate "in/$name.glb" "${quick[@]}" -o model.glb --convention godot
-    checks=$((checks + 1))
-    node "$here/occonly.mjs" model.glb 2>problems || fail "$name: $(cat problems)"
+    occluders "in/$name.glb" "${quick[@]}"
 done
 rm -r in
+
+# Instances share what they can, in their places; for the import they are moved there.
+apart=("$models/yard.glb" --separate --views "$here/one_view.txt" --resolution 24 --effort fast)
+scene "" "${apart[@]}"
+holds "instances have places" grep -q '^transform = Transform3D(' scene.tscn
+scene "" "${apart[@]}" --convention godot
+occluders "${apart[@]}"
 finish

@@ -143,7 +143,8 @@ assert.equal(root.fields.type, "Node3D");
 assert(!("parent" in root.fields), "the root has no parent");
 
 const model = readModel(modelPath);
-const names = given.length > 0 ? given : model.map(({ name }) => name);
+const names = given.length > 0 ? given :
+    model.map(({ name }) => name.replace(/[.:@/"%]/g, "_"));
 assert.equal(nodes.length, model.length);
 assert.deepEqual(nodes.map((node) => node.fields.name), names);
 assert.equal(new Set(names).size, names.length);
