@@ -189,14 +189,15 @@ GltfMask GltfMasks::Read(std::size_t material)
     const Json& json = file_.document["materials"][material];
     GltfMask mask;
     mask.cutoff = GetNumber(json, "alphaCutoff", 0.5);
-    mask.isKnown = true;
     const auto roughness = json.find("pbrMetallicRoughness");
-    if (roughness != json.end()) {
+    const bool hasTexture = roughness != json.end() && roughness->contains("baseColorTexture");
+    if (hasTexture) {
         mask.factor = GetNumber(*roughness, "baseColorFactor", 3, 1.0);
-        const auto info = roughness->find("baseColorTexture");
-        if (info != roughness->end()) {
-            ReadTexture(*info, mask);
-        }
+        ReadTexture((*roughness)["baseColorTexture"], mask);
+    } else {
+        // A mask without one is what is left of a material whose textures were taken off, and as
+        // likely a leaf as a wall.
+        ++textureless_;
     }
     return mask;
 }
@@ -206,8 +207,7 @@ void GltfMasks::ReadTexture(const Json& info, GltfMask& mask)
     const std::size_t index = info["index"].get<std::size_t>();
     const std::optional<std::size_t> image = FindImage(index);
     if (!image) {
-        ++sourceless_;
-        mask.isKnown = false;
+        ++textureless_;
         return;
     }
     Texture& texture = FindTexture({*image, {FindWrap(index, "wrapS"), FindWrap(index, "wrapT")}});
@@ -308,11 +308,8 @@ void GltfMasks::WarnOfUnreadable() const
                    texture.materials);
         }
     }
-    if (sourceless_ > 0) {
-        Warn(file_.job,
-             "%zu masked materials have a texture without an image, and cannot be "
-             "judged",
-             sourceless_);
+    if (textureless_ > 0) {
+        Warn(file_.job, "%zu masked materials have no texture to be judged by", textureless_);
     }
 }
 

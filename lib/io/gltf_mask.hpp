@@ -37,8 +37,8 @@ class OwnedAlphaMap
 /// A material whose alpha is masked. Alpha is factor × vertex alpha × what the map says, and 1
 /// stands for the map where there is none.
 struct GltfMask {
-    bool isKnown = false;             ///< false: its texture cannot be looked at
-    const pvtAlphaMap* map = nullptr; ///< null: there is no texture, or one without alpha
+    bool isKnown = false;             ///< false: there is no texture that can be looked at
+    const pvtAlphaMap* map = nullptr; ///< null: the texture has no alpha
     double factor = 1.0, cutoff = 0.5;
     std::size_t texCoord = 0;
     /// From texture coordinates to texels, row after row: 2 × 3.
@@ -123,7 +123,7 @@ class GltfMasks
     const GltfFile& file_;
     std::map<std::size_t, GltfMask> masks_;
     std::map<Key, Texture> textures_;
-    std::size_t sourceless_ = 0; // materials whose texture names no image
+    std::size_t textureless_ = 0; // materials without a texture, or one without an image
 };
 
 } // namespace pvt

@@ -411,11 +411,11 @@ static void materials_that_let_light_through_are_left_out(void** state)
     CHECK_OK(f->context, LoadCube(f, two));
     assert_int_equal(f->model.mesh.triangleCount, 24);
     assert_null(strstr(f->warnings.text, "masked"));
-    // Without a texture its alpha is 1, and there is nothing to see through.
     f->options.masked = PVT_MASKED_AUTO;
     CHECK_OK(f->context, LoadCube(f, two));
-    assert_int_equal(f->model.mesh.triangleCount, 24);
-    assert_null(strstr(f->warnings.text, "masked"));
+    assert_int_equal(f->model.mesh.triangleCount, 12);
+    assert_non_null(strstr(f->warnings.text, "1 masked materials have no texture"));
+    assert_non_null(strstr(f->warnings.text, "--masked opaque"));
 
     f->options.masked = PVT_MASKED_SKIP;
     const char* leaves = "{" ASSET CUBE_BUFFER CUBE_ACCESSORS

@@ -325,10 +325,6 @@ static void factor_vertices_and_cutoff_decide_with_the_texture(void** state)
         {"'TEXCOORD_0':1,'COLOR_0':5", "'alphaCutoff':0.26," BASE(""), false},
         // Colours without alpha.
         {"'TEXCOORD_0':1,'COLOR_0':0", BASE(""), true},
-        // Without a texture, and without texture coordinates.
-        {"'COLOR_0':5", "'alphaCutoff':0.5", true},
-        {"'COLOR_0':5", "'alphaCutoff':0.51", false},
-        {"", "'pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.4]}", false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         const Card card = {.attributes = cases[i].attributes, .material = cases[i].material};
@@ -337,6 +333,22 @@ static void factor_vertices_and_cutoff_decide_with_the_texture(void** state)
             fail_msg("case %zu: %s", i, pvtContext_GetMessage(f->context));
         }
         assert_int_equal(f->model.mesh.triangleCount, cases[i].isOpaque ? 2 : 0);
+    }
+}
+
+// It may be a leaf, whose texture was taken off: as without its image.
+static void a_mask_without_a_texture_is_left_out(void** state)
+{
+    Fixture* f = *state;
+    const char* const materials[] = {"'name':'leaf'", "'alphaCutoff':0",
+                                     "'pbrMetallicRoughness':{'baseColorFactor':[1,1,1,0.9]}"};
+    for (size_t i = 0; i < sizeof materials / sizeof *materials; ++i) {
+        const Card card = {.attributes = "'COLOR_0':5", .material = materials[i]};
+        CheckRefused(f, LoadCard(f, &card), PVT_INVALID_INPUT, "--masked opaque");
+        assert_non_null(strstr(f->warnings.text, "1 masked materials have no texture"));
+        f->options.masked = PVT_MASKED_OPAQUE;
+        CheckArea(f, &card, 1.0);
+        f->options.masked = PVT_MASKED_AUTO;
     }
 }
 
@@ -526,6 +538,7 @@ int main(void)
         TEST(wrap_modes_say_what_lies_beyond_the_image),
         TEST(texture_coordinates_are_taken_as_the_material_says),
         TEST(factor_vertices_and_cutoff_decide_with_the_texture),
+        TEST(a_mask_without_a_texture_is_left_out),
         TEST(without_its_image_a_mask_is_left_out_with_the_reason),
         TEST(an_image_beyond_the_memory_limit_is_refused_as_such),
         TEST(coarser_looks_only_ever_lose_surface),
