@@ -99,6 +99,12 @@ static pvtStatus MakeLadder(pvtRun* run, const pvtLadderLine* options, pvtLadder
     if (options->generate.tolerance.value < 0.0) {
         ladder->build.tolerance = pvtDefaultBuildOptions().tolerance;
     }
+    if (options->naming == PVT_NAMING_SUFFIX &&
+        options->generate.convention == PVT_CONVENTION_GODOT) {
+        pvtReport_Warn(&run->report,
+                       "Godot's import makes one occluder of all nodes that end in -occonly, "
+                       "coarse and fine; --naming msft shows it the finest level alone");
+    }
     pvtImage sheet = {0};
     pvtStatus status = Load(run, options, ladder, result);
     if (status == PVT_OK) {

@@ -79,7 +79,7 @@ static inline double GetCornerDistance(pvtVec3 center, const pvtMesh* mesh)
     return most;
 }
 
-enum { PICTURE_DIRECTIONS = 42, PICTURE_FINENESS = 12 };
+enum { PICTURE_DIRECTIONS = 42, PICTURE_FINENESS = 10 };
 
 /// [px] The same at some distance, from many directions; the worst.
 static inline double MeasureLevel(pvtContext* context, const pvtLadder* ladder, size_t index,

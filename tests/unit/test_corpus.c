@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Folders of models from elsewhere, named by PVT_MODELS (good ones) and PVT_NASTY (any): whatever
-// is in them is read or refused with a message, and what is read is sound.
+// is in them is read or refused with a message, what is read is sound, and a glTF can be taken over
+// whole.
 #include "files.h"
 
 #include <ftw.h>
@@ -33,6 +34,32 @@ static void CheckModel(const pvtModel* model)
     assert_int_equal(next, mesh->triangleCount);
 }
 
+// Written out again with a triangle beside it, a glTF gives the same triangles.
+static void CheckTakenOver(const char* path, const pvtModel* model)
+{
+    if (!pvtIsGltf(walkContext, path)) {
+        return;
+    }
+    const TestFolder folder = MakeTestFolder();
+    const char* copy = InFolder(&folder, "copy.glb");
+    pvtVec3 corners[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    uint32_t indices[3] = {0, 1, 2};
+    const pvtMesh mesh = {corners, indices, 3, 1};
+    const pvtSaveItem item = {.name = "beside", .mesh = &mesh};
+    const pvtLevelSet set = {.levels = &item, .levelCount = 1, .original = path, .scene = -1};
+    CHECK_OK(walkContext, pvtSaveLevels(walkContext, copy, &set));
+    pvtModel again;
+    CHECK_OK(walkContext, pvtLoadModel(walkContext, NULL, copy, &again));
+    const size_t count = model->mesh.triangleCount;
+    assert_int_equal(again.partCount, model->partCount + 1);
+    assert_int_equal(again.mesh.triangleCount, count + 1);
+    assert_memory_equal(again.mesh.indices, model->mesh.indices, 3 * count * sizeof(uint32_t));
+    assert_memory_equal(again.mesh.positions, model->mesh.positions,
+                        model->mesh.positionCount * sizeof(pvtVec3));
+    pvtModel_Free(walkContext, &again);
+    assert_int_equal(RemoveTestFolder(&folder), 1);
+}
+
 static int VisitFile(const char* path, const struct stat* info, int kind, struct FTW* place)
 {
     (void)info;
@@ -45,6 +72,7 @@ static int VisitFile(const char* path, const struct stat* info, int kind, struct
     const char* message = pvtContext_GetMessage(walkContext);
     if (status == PVT_OK) {
         CheckModel(&model);
+        CheckTakenOver(path, &model);
         ++readCount;
     } else if (allAreGood && strstr(path, ".glb") != NULL) {
         fail_msg("%s", message);

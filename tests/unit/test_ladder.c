@@ -4,24 +4,24 @@
 
 #include <string.h>
 
-// Twelve upright bars, with gaps between them that widen from 0.05 to 0.3.
+// Eight upright bars, with gaps between them that widen from 0.05 to 0.35.
 static void MakeFence(pvtContext* context, pvtMesh* mesh)
 {
     *mesh = (pvtMesh){0};
     double x = 0.0;
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 8; ++i) {
         pvtMesh bar;
-        MakeBoxMesh(context, (pvtVec3){x, 0, 0}, (pvtVec3){x + 0.5, 4, 0.8}, &bar);
+        MakeBoxMesh(context, (pvtVec3){x, 0, 0}, (pvtVec3){x + 0.5, 3, 0.8}, &bar);
         CHECK_OK(context, pvtMesh_Append(context, mesh, &bar));
         pvtMesh_Free(context, &bar);
-        x += 0.55 + 0.025 * i;
+        x += 0.55 + 0.05 * i;
     }
 }
 
 static pvtLadderOptions GetQuickOptions(void)
 {
     pvtLadderOptions options = pvtDefaultLadderOptions();
-    options.build.views.count = 8;
+    options.build.views.count = 4;
     options.build.effort = PVT_EFFORT_FAST;
     options.levelCount = 3;
     const double errors[] = {0.12, 0.4, 1.2};
@@ -93,15 +93,15 @@ static bool IsBlocked(const pvtMesh* mesh, double x, double y)
     return false;
 }
 
-// Of 100 rays through each of the eleven gaps, those that meet the mesh.
+// Of 60 rays through each of the seven gaps, those that meet the mesh.
 static int CountBlockedRays(const pvtMesh* mesh)
 {
     int count = 0;
     double x = 0.5;
-    for (int i = 0; i < 11; ++i) {
-        const double gap = 0.05 + 0.025 * i;
-        for (int k = 0; k < 100; ++k) {
-            count += IsBlocked(mesh, x + 0.5 * gap, 0.02 + 0.04 * k - 1e-3);
+    for (int i = 0; i < 7; ++i) {
+        const double gap = 0.05 + 0.05 * i;
+        for (int k = 0; k < 60; ++k) {
+            count += IsBlocked(mesh, x + 0.5 * gap, 0.024 + 0.05 * k);
         }
         x += 0.5 + gap;
     }
@@ -123,7 +123,7 @@ static void openings_close_as_voxels_grow(void** state)
     const int coarse = CountBlockedRays(&ladder.levels[2].occluder.mesh);
     assert_int_equal(fine, 0);
     assert_true(middle >= fine && coarse > middle);
-    assert_true(coarse > 500);
+    assert_true(coarse > 200);
     pvtLadder_Free(context, &ladder);
     pvtMesh_Free(context, &fence);
     DestroyTestContext(context);
@@ -138,16 +138,17 @@ static void the_default_errors_double_and_the_default_budgets_halve(void** state
     pvtLadderOptions options = pvtDefaultLadderOptions();
     options.build.views.count = 2;
     options.build.effort = PVT_EFFORT_FAST;
-    options.build.resolution = 128;
+    options.build.resolution = 64;
+    options.levelCount = 3;
     static const pvtLength holes[] = {{0.0, false}, {0.2, false}, {3.0, true}};
     for (size_t h = 0; h < sizeof holes / sizeof *holes; ++h) {
         options.build.smallestHole = holes[h];
         pvtLadder ladder;
         CHECK_OK(context, pvtBuildLadder(context, &options, &box, &ladder));
-        assert_int_equal(ladder.count, 4);
-        CHECK_NEAR(ladder.levels[0].stats.voxelSize, 4.0 / 128, 1e-12);
+        assert_int_equal(ladder.count, 3);
+        CHECK_NEAR(ladder.levels[0].stats.voxelSize, 4.0 / 64, 1e-12);
         assert_true(ladder.levels[0].stats.tolerance == 0.0);
-        for (size_t i = 0; i < 4; ++i) {
+        for (size_t i = 0; i < 3; ++i) {
             const pvtBuildStats* stats = &ladder.levels[i].stats;
             CHECK_NEAR(stats->errorBound, ldexp(ladder.levels[0].stats.errorBound, (int)i), 1e-9);
             assert_true(i == 0 || stats->tolerance == stats->voxelSize);
@@ -252,7 +253,7 @@ static void the_finest_level_fails_by_its_name(void** state)
     DestroyTestContext(context);
 }
 
-static void contradictions_are_refused_before_any_work(void** state)
+static void contradictions_are_refused_by_name(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
@@ -367,7 +368,7 @@ int main(void)
         cmocka_unit_test(distance_and_coverage_follow_the_formula),
         cmocka_unit_test(a_coarser_level_that_cannot_be_had_is_left_out_and_named),
         cmocka_unit_test(the_finest_level_fails_by_its_name),
-        cmocka_unit_test(contradictions_are_refused_before_any_work),
+        cmocka_unit_test(contradictions_are_refused_by_name),
         cmocka_unit_test(threads_do_not_change_a_byte_of_any_level),
         cmocka_unit_test(a_cancelled_ladder_leaves_nothing),
         cmocka_unit_test(a_ladder_that_runs_out_of_memory_leaves_nothing),

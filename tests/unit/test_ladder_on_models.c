@@ -23,10 +23,10 @@ static void models_of_the_project_show_no_error_at_their_levels_distances(void**
 {
     (void)state;
     pvtLadderOptions options = pvtDefaultLadderOptions();
-    options.build.resolution = 64;
-    options.build.views.count = 8;
+    options.build.resolution = 48;
+    options.build.views.count = 4;
     options.build.effort = PVT_EFFORT_FAST;
-    options.levelCount = 3;
+    options.levelCount = 2;
     CheckModel(&options, PVT_TEST_MODELS, "boulder.glb");
     CheckModel(&options, PVT_TEST_MODELS, "building_kaykit_a.glb");
     options.build.smallestHole = (pvtLength){3.0, true};
