@@ -49,24 +49,22 @@ static pvtStatus Prepare(pvtRun* run, const pvtGenerateOptions* options, const c
     return status == PVT_OK ? pvtOpenSetup(run, options, setup) : status;
 }
 
-static pvtStatus Load(pvtRun* run, pvtGenerateOptions* options, pvtGenerated* generated)
+static pvtStatus Load(pvtRun* run, const pvtGenerateOptions* options, pvtGenerated* generated)
 {
     generated->prepared = pvtGetClock();
     const pvtStatus status = pvtLoadInput(run, options, generated->input, &generated->model);
     generated->loaded = pvtGetClock();
-    if (options->budget == 0) {
-        options->budget = pvtGetSeparateBudget(generated->model.partCount);
-    }
     return status;
 }
 
-static pvtStatus Build(pvtRun* run, const pvtGenerateOptions* options, const pvtSetup* setup,
+static pvtStatus Build(pvtRun* run, pvtGenerateOptions* options, const pvtSetup* setup,
                        pvtGenerated* generated)
 {
     const pvtBuildOptions build = pvtSetup_GetBuildOptions(setup, options);
     pvtStatus status = PVT_OK;
     if (options->separate) {
         status = pvtBuildSeparately(run, &build, generated);
+        options->budget = generated->separation.budget;
     } else {
         status = pvtBuildOccluder(run->context, &build, &generated->model.mesh,
                                   &generated->occluder, &generated->stats);

@@ -19,7 +19,7 @@ typedef struct pvtGenerateOptions {
     pvtCommonOptions common;
     const char *output, *stats, *preview;
     bool separate;
-    int budget; ///< 0 with `separate`, until the nodes are counted: none is given
+    int budget; ///< 0 with `separate`, until it is chosen: none is given
     int resolution;
     double error;    ///< [wu] 0: the resolution holds
     double deadline; ///< [s] 0: none

@@ -47,8 +47,9 @@ static const pvtOption occluderTable[] = {
      .placeholder = "N",
      .least = 1,
      .most = 65535,
-     .help = "most triangles in the occluder; with --separate in all of them, each counted as "
-             "often as its mesh is instanced, and 16 a mesh node unless it is given"},
+     .help =
+         "most triangles in the occluder; with --separate in all of them, each counted as "
+         "often as its mesh is instanced, and unless it is given 16 a mesh node with an inside"},
     {.name = "separate",
      FIELD(PVT_OPTION_FLAG, separate),
      .help = "an occluder for each mesh node instead of one for all, named after it; nodes of one "

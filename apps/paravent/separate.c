@@ -8,14 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIANGLES_A_NODE = 16, MAX_BUDGET = 65535 };
-
-int pvtGetSeparateBudget(size_t nodeCount)
+static pvtStatus FailNoMemory(pvtRun* run)
 {
-    const size_t least = (size_t)pvtDefaultBuildOptions().budget;
-    const size_t wanted =
-        nodeCount > MAX_BUDGET / TRIANGLES_A_NODE ? MAX_BUDGET : TRIANGLES_A_NODE * nodeCount;
-    return (int)(wanted < least ? least : wanted);
+    (void)pvtRun_Fail(run, PVT_OUT_OF_MEMORY, "out of memory while the nodes are listed");
+    return PVT_OUT_OF_MEMORY;
 }
 
 // The occluder of a node, or null.
@@ -103,7 +99,7 @@ static pvtStatus JoinOccluders(pvtRun* run, pvtGenerated* generated)
     const size_t count = generated->model.partCount;
     pvtPlacedMesh* placed = calloc(count + 1, sizeof *placed);
     if (placed == NULL) {
-        return pvtRun_Fail(run, PVT_OUT_OF_MEMORY, "out of memory");
+        return FailNoMemory(run);
     }
     size_t used = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -134,7 +130,7 @@ pvtStatus pvtBuildSeparately(pvtRun* run, const pvtBuildOptions* build, pvtGener
     const pvtModel* model = &generated->model;
     pvtInstance* instances = calloc(model->partCount + 1, sizeof *instances);
     if (instances == NULL) {
-        return pvtRun_Fail(run, PVT_OUT_OF_MEMORY, "out of memory");
+        return FailNoMemory(run);
     }
     for (size_t i = 0; i < model->partCount; ++i) {
         const pvtModelPart* part = &model->parts[i];
@@ -205,7 +201,7 @@ static pvtStatus AddItem(const pvtGenerateOptions* options, const pvtGenerated* 
     const size_t size = strlen(items->unique[node]) + 32;
     items->names[index] = malloc(size);
     if (items->names[index] == NULL) {
-        return pvtRun_Fail(items->run, PVT_OUT_OF_MEMORY, "out of memory");
+        return FailNoMemory(items->run);
     }
     pvtMakeNodeName(items->unique[node], options->convention, items->names[index], size);
     pvtListExtras(options, &occluder->stats, occluder->budget, items->extras[index]);
@@ -230,7 +226,8 @@ pvtStatus pvtSaveSeparately(pvtRun* run, const pvtGenerateOptions* options,
     Items items = {.run = run};
     pvtStatus status = PVT_OK;
     if (!AllocateItems(generated, &items)) {
-        status = pvtRun_Fail(run, PVT_OUT_OF_MEMORY, "out of memory");
+        FreeItems(&items, generated->model.partCount);
+        return FailNoMemory(run);
     }
     for (size_t i = 0; i < generated->model.partCount && status == PVT_OK; ++i) {
         if (FindOccluder(generated, i) != NULL) {

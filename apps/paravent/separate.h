@@ -5,10 +5,6 @@
 
 #include "generate.h"
 
-/// The budget when none is given: 16 triangles a node, at least the default of a single occluder
-/// and at most what a budget can be.
-int pvtGetSeparateBudget(size_t nodeCount);
-
 /// Makes the occluders, and with them what the rest of the run looks at: all of them as one mesh,
 /// where they stand, and numbers of the whole.
 pvtStatus pvtBuildSeparately(pvtRun* run, const pvtBuildOptions* build, pvtGenerated* generated);

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_SIZE = 128, MAX_NOTES = 8 };
+enum { NAME_SIZE = 128, MAX_NOTES = 8, MAX_TOLD = 12 };
 
 // What became of a piece.
 typedef struct Piece {
@@ -233,12 +233,22 @@ static pvtStatus FindFailure(Crew* crew)
 static void PassNotesOn(const Crew* crew)
 {
     const pvtCrewWork* work = crew->work;
+    size_t told = 0;
+    size_t untold = 0;
     for (size_t i = 0; i < work->count; ++i) {
         for (int note = 0; note < crew->pieces[i].noteCount; ++note) {
             char name[NAME_SIZE];
+            if (told == MAX_TOLD) {
+                ++untold;
+                continue;
+            }
             work->name(i, name, sizeof name, work->user);
             pvtLog(crew->parent, PVT_LOG_WARNING, "%s: %s", name, crew->pieces[i].notes[note]);
+            ++told;
         }
+    }
+    if (untold > 0) {
+        pvtLog(crew->parent, PVT_LOG_WARNING, "and %zu more warnings like these", untold);
     }
 }
 

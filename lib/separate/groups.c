@@ -240,6 +240,7 @@ static pvtStatus PrepareGroup(pvtContext* context, const Grouping* grouping, siz
 {
     pvtGroup* group = &groups->groups[index];
     group->options = *grouping->options;
+    group->options.budget = 1; // each gets its share later; measuring takes any
     group->options.error /= group->scale;
     ScaleLength(group->scale, &group->options.tolerance);
     ScaleLength(group->scale, &group->options.smallestHole);

@@ -16,7 +16,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MEASURE_SIZE = 64, FEW = 8 };
+enum {
+    MEASURE_SIZE = 64,
+    FEW = 8,
+    AN_INSTANCE = 16,
+    LEAST_BUDGET = 64,
+    MAX_BUDGET = 65535,
+    MAX_TOLD = 12, // warnings of one kind: the rest are counted
+};
 
 // A piece of work and about how long it takes.
 typedef struct Job {
@@ -192,9 +199,22 @@ static pvtStatus MeasureStep(pvtContext* context, Separate* separate)
     return RunJobs(separate, "measure", false, RunMeasure);
 }
 
+static int ChooseBudget(const Separate* separate)
+{
+    size_t instances = 0;
+    for (size_t i = 0; i < separate->out.count; ++i) {
+        const pvtSeparateOccluder* occluder = &separate->out.occluders[i];
+        instances += occluder->result == PVT_SEPARATE_HOLLOW ? 0 : occluder->instanceCount;
+    }
+    const size_t wanted = instances < MAX_BUDGET ? AN_INSTANCE * instances : MAX_BUDGET;
+    return wanted < LEAST_BUDGET ? LEAST_BUDGET : wanted > MAX_BUDGET ? MAX_BUDGET : (int)wanted;
+}
+
 static pvtStatus ShareStep(pvtContext* context, Separate* separate)
 {
     const size_t count = separate->out.count;
+    const int given = separate->options->budget;
+    separate->out.budget = given > 0 ? given : ChooseBudget(separate);
     pvtClaim* claims = pvtAllocate(context, count, sizeof *claims);
     int* shares = pvtAllocate(context, count, sizeof *shares);
     pvtStatus status = claims == NULL || shares == NULL ? pvtContext_GetStatus(context) : PVT_OK;
@@ -207,7 +227,7 @@ static pvtStatus ShareStep(pvtContext* context, Separate* separate)
                                occluder->instanceCount};
     }
     if (status == PVT_OK) {
-        status = pvtShareBudget(context, claims, count, separate->options->budget, shares);
+        status = pvtShareBudget(context, claims, count, separate->out.budget, shares);
     }
     for (size_t i = 0; i < count && status == PVT_OK; ++i) {
         separate->out.occluders[i].budget = shares[i];
@@ -233,11 +253,10 @@ static pvtStatus RefuseShare(const Separate* separate, pvtSeparateOccluder* occl
 {
     char text[160];
     const double wanted = CountWanted(separate);
-    const int used = snprintf(text, sizeof text,
-                              "the budget of %d triangles is used up before its %zu instance%s",
-                              separate->options->budget, occluder->instanceCount,
-                              occluder->instanceCount == 1 ? "" : "s");
-    if (wanted <= 65535.0) {
+    const int used = snprintf(
+        text, sizeof text, "the budget of %d triangles is used up before its %zu instance%s",
+        separate->out.budget, occluder->instanceCount, occluder->instanceCount == 1 ? "" : "s");
+    if (wanted <= MAX_BUDGET) {
         (void)snprintf(text + used, sizeof text - (size_t)used,
                        "; --budget %.0f has two for every instance", wanted);
     }
@@ -255,8 +274,8 @@ static double GetDeadline(Separate* separate)
     }
     const size_t left = begun < separate->jobCount ? separate->jobCount - begun : 1;
     const size_t size = (size_t)separate->crewSize;
-    const double rounds = (double)((left + size - 1) / size);
-    return fmax(1e-6, (whole - (pvtGetSeconds() - separate->started)) / rounds);
+    const size_t rounds = (left + size - 1) / size;
+    return fmax(1e-6, (whole - (pvtGetSeconds() - separate->started)) / (double)rounds);
 }
 
 // To the world's lengths, and to all instances.
@@ -327,6 +346,25 @@ static pvtStatus BuildStep(pvtContext* context, Separate* separate)
     return status;
 }
 
+// A scene of a thousand sheets is told of a few of them.
+static void TellMissing(pvtContext* context, Separate* separate, size_t missing)
+{
+    size_t told = 0;
+    for (size_t i = 0; i < separate->out.count && told < MAX_TOLD; ++i) {
+        if (separate->out.occluders[i].result != PVT_SEPARATE_MADE) {
+            char name[128];
+            NameJob(i, name, sizeof name, separate);
+            pvtLog(context, PVT_LOG_WARNING, "%s: no occluder: %s", name,
+                   separate->out.occluders[i].reason);
+            ++told;
+        }
+    }
+    if (missing > told) {
+        pvtLog(context, PVT_LOG_WARNING, "and %zu more meshes have no occluder, of %zu in all",
+               missing - told, separate->out.count);
+    }
+}
+
 // What has no occluder is told, in the order of the instances; without any the run has failed.
 static pvtStatus TellStep(pvtContext* context, Separate* separate)
 {
@@ -347,13 +385,7 @@ static pvtStatus TellStep(pvtContext* context, Separate* separate)
                        "none of the %zu meshes gets an occluder; of the first, %s: %s",
                        separate->out.count, name, separate->out.occluders[0].reason);
     }
-    for (size_t i = 0; i < separate->out.count; ++i) {
-        if (separate->out.occluders[i].result != PVT_SEPARATE_MADE) {
-            NameJob(i, name, sizeof name, separate);
-            pvtLog(context, PVT_LOG_WARNING, "%s: no occluder: %s", name,
-                   separate->out.occluders[i].reason);
-        }
-    }
+    TellMissing(context, separate, separate->out.count - made);
     return PVT_OK;
 }
 
@@ -375,9 +407,10 @@ pvtStatus pvtBuildSeparateOccluders(pvtContext* context, const pvtBuildOptions* 
     Separate separate = {
         .context = context, .options = options, .set = set, .started = pvtGetSeconds()};
     pvtStatus status = PVT_OK;
-    if (options->budget < 1 || options->budget > 65535) {
+    if (options->budget < 0 || options->budget > MAX_BUDGET) {
         status = pvtFail(context, PVT_INVALID_ARGUMENT,
-                         "budget is %d triangles; it must be 1 to 65535", options->budget);
+                         "budget is %d triangles; it must be 1 to %d, or 0 to be chosen",
+                         options->budget, MAX_BUDGET);
     }
     for (size_t i = 0; i < sizeof steps / sizeof *steps && status == PVT_OK; ++i) {
         status = steps[i](context, &separate);

@@ -62,6 +62,7 @@ typedef struct pvtSeparateOccluder {
 enum { PVT_NO_OCCLUDER = -1 };
 
 typedef struct pvtSeparation {
+    int budget;                     ///< that was shared
     pvtSeparateOccluder* occluders; ///< in the order of their first instances
     size_t count;
     /// For each instance the occluder that it takes, which may have come to nothing, or
@@ -75,12 +76,13 @@ typedef struct pvtSeparation {
 /// promise holds for each instance, as being inside does not depend on an affine transform.
 ///
 /// `options` mean what they mean to pvtBuildOccluder, with these differences. The budget is shared
-/// by pvtShareBudget. The resolution is along each mesh's own longest side. Lengths in world units
-/// hold for each instance: they are divided by the largest stretch. Where `ground`, `terrain` or
-/// views from above ask for what is up, instances of a mesh that stand on different sides count as
-/// different meshes; up is then the mesh's own axis that is nearest to it. Views from a list are
-/// turned into the mesh's space for as many instances as 64 views allow. The deadline is that of
-/// the whole.
+/// by pvtShareBudget; 0 stands for 16 triangles an instance of those whose mesh has an inside, but
+/// at least 64 and at most 65535. The resolution is along each mesh's own longest side. Lengths in
+/// world units hold for each instance: they are divided by the largest stretch. Where `ground`,
+/// `terrain` or views from above ask for what is up, instances of a mesh that stand on different
+/// sides count as different meshes; up is then the mesh's own axis that is nearest to it. Views
+/// from a list are turned into the mesh's space for as many instances as 64 views allow. The
+/// deadline is that of the whole.
 ///
 /// Warnings name the instance. PVT_NOTHING_INSIDE when no mesh gets an occluder.
 PVT_API pvtStatus pvtBuildSeparateOccluders(pvtContext* context, const pvtBuildOptions* options,
