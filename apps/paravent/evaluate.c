@@ -23,6 +23,11 @@ typedef struct Session {
     pvtImage sheet;
 } Session;
 
+static bool IsStdout(const char* path)
+{
+    return path != NULL && strcmp(path, "-") == 0;
+}
+
 static pvtStatus CheckFiles(pvtRun* run, const pvtEvaluateLine* line, const Session* session)
 {
     pvtTarget targets[6 + PVT_MOST_OCCLUDERS];
@@ -42,6 +47,12 @@ static pvtStatus CheckFiles(pvtRun* run, const pvtEvaluateLine* line, const Sess
                            "--silhouettes %s: pictures are written as .png; give the name that "
                            "ending",
                            line->silhouettes);
+    }
+    if (status == PVT_OK && line->plot != NULL && !IsStdout(line->plot) &&
+        !pvtPathEndsIn(line->plot, ".svg")) {
+        return pvtRun_Fail(run, PVT_INVALID_ARGUMENT,
+                           "--plot %s: a plot is written as .svg; give the name that ending",
+                           line->plot);
     }
     return status;
 }
@@ -179,11 +190,6 @@ static pvtStatus Save(pvtRun* run, const pvtEvaluateLine* line, const Session* s
         }
     }
     return PVT_OK;
-}
-
-static bool IsStdout(const char* path)
-{
-    return path != NULL && strcmp(path, "-") == 0;
 }
 
 static pvtStatus PrintTable(pvtRun* run, const pvtEvaluateLine* line, const Session* session)
