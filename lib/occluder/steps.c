@@ -175,6 +175,12 @@ static pvtStatus FailNothingInside(pvtContext* context, const pvtBuild* build)
             "fills what lies below it",
             resolution);
     }
+    if (remedy->ground && remedy->smallestHole > 0.0) {
+        return pvtFail(context, PVT_NOTHING_INSIDE,
+                       "nothing is inside at %d voxels: the mesh is open at the bottom and has "
+                       "other openings; --ground and --smallest-hole %g together close them",
+                       resolution, remedy->smallestHole);
+    }
     if (remedy->ground) {
         return pvtFail(context, PVT_NOTHING_INSIDE,
                        "nothing is inside at %d voxels, but the mesh is open at the bottom only; "

@@ -30,7 +30,8 @@ enum {
     SMALLEST_BALL = 2,
     MORE_ROOM = 2,
     EXACT_ENOUGH = 8,
-    CANCEL_INTERVAL = 16
+    CANCEL_INTERVAL = 16,
+    MOST_ROUNDS = 3
 };
 
 static const double roomFactor = 1.5;
@@ -390,8 +391,8 @@ static bool IsFound(const pvtRemedy* remedy)
     return remedy->smallestHole > 0.0 || remedy->ground || remedy->terrain;
 }
 
-pvtStatus pvtFindRemedy(pvtContext* context, const pvtSolidOptions* options,
-                        const pvtBitGrid* surface, uint64_t strictCount, pvtRemedy* remedy)
+static pvtStatus FindNextRemedy(pvtContext* context, const pvtSolidOptions* options,
+                                const pvtBitGrid* surface, double strictCount, pvtRemedy* remedy)
 {
     *remedy = (pvtRemedy){0};
     pvtGridBox box;
@@ -400,7 +401,7 @@ pvtStatus pvtFindRemedy(pvtContext* context, const pvtSolidOptions* options,
     }
     const double volume = pvtGridBox_GetVolume(&box);
     const double touched = (double)pvtBitGrid_Count(surface) / volume;
-    const double needed = fmax(leastFraction, leastGain * (double)strictCount / volume);
+    const double needed = fmax(leastFraction, leastGain * strictCount / volume);
     if (needed > 1.0 - touched) {
         return PVT_OK;
     }
@@ -420,6 +421,42 @@ pvtStatus pvtFindRemedy(pvtContext* context, const pvtSolidOptions* options,
     if (status != PVT_OK) {
         *remedy = (pvtRemedy){0};
     }
-    // The solid is whole without it.
+    return status;
+}
+
+static void Apply(const pvtRemedy* remedy, pvtSolidOptions* options)
+{
+    options->smallestHole = fmax(options->smallestHole, remedy->smallestHole);
+    options->ground = options->ground || remedy->ground;
+    options->terrain = options->terrain || remedy->terrain;
+}
+
+// What is hollow with the first remedy, too, would ask for the next one when it is run again: they
+// are looked for at once, as long as each fills several times as much as the one before.
+pvtStatus pvtFindRemedy(pvtContext* context, const pvtSolidOptions* options,
+                        const pvtBitGrid* surface, uint64_t strictCount, pvtRemedy* remedy)
+{
+    *remedy = (pvtRemedy){0};
+    pvtSolidOptions tried = *options;
+    double strict = (double)strictCount;
+    bool isMore = true;
+    pvtStatus status = PVT_OK;
+    for (int round = 0; round < MOST_ROUNDS && isMore && status == PVT_OK; ++round) {
+        pvtRemedy next;
+        status = FindNextRemedy(context, &tried, surface, strict, &next);
+        isMore = status == PVT_OK && IsFound(&next) && (round == 0 || !next.terrain);
+        if (isMore) {
+            Apply(&next, &tried);
+            remedy->smallestHole = fmax(remedy->smallestHole, next.smallestHole);
+            remedy->ground = remedy->ground || next.ground;
+            remedy->terrain = next.terrain;
+            isMore = !next.terrain;
+            status = CountInside(context, &tried, surface, &strict);
+        }
+    }
+    if (status != PVT_OK && status != PVT_LIMIT) {
+        *remedy = (pvtRemedy){0};
+    }
+    // The solid is whole without it, and a remedy is one without the next.
     return status == PVT_LIMIT ? PVT_OK : status;
 }

@@ -41,6 +41,35 @@ static double GetFraction(pvtContext* context, const pvtBitGrid* surface, pvtSol
     return fraction;
 }
 
+// A shell with a wide hole around one with a narrow hole: closing the narrow one fills little, and
+// would only lead to the next warning.
+static void one_remedy_fills_a_shell_within_a_shell(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtBitGrid surface, inner;
+    MakeShell(context, 30, 11.0, &surface);
+    MakeShell(context, 10, 3.0, &inner);
+    const int side = 2 * 10 + 7;
+    for (int i = 0; i < side * side * side; ++i) {
+        const int v[3] = {i % side, i / side % side, i / (side * side)};
+        if (pvtBitGrid_Get(&inner, v[0], v[1], v[2])) {
+            SetVoxel(&surface, v[0] + 20, v[1] + 20, v[2] + 20);
+        }
+    }
+    surface.frame.voxelSize = 1.0;
+    pvtSolidOptions options = pvtDefaultSolidOptions();
+    const pvtRemedy remedy = FindRemedy(context, &surface, options);
+    assert_true(remedy.smallestHole >= 11.0);
+    options.smallestHole = remedy.smallestHole;
+    assert_true(GetFraction(context, &surface, options) > 0.3);
+    const pvtRemedy next = FindRemedy(context, &surface, options);
+    assert_false(next.smallestHole > 0.0 || next.ground || next.terrain);
+    pvtBitGrid_Free(context, &inner);
+    pvtBitGrid_Free(context, &surface);
+    DestroyTestContext(context);
+}
+
 // At 20 voxels the search sees the grid itself, at 42 a coarser copy first.
 static void the_size_told_for_a_shell_with_holes_fills_it(void** state)
 {
@@ -274,6 +303,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_size_told_for_a_shell_with_holes_fills_it),
+        cmocka_unit_test(one_remedy_fills_a_shell_within_a_shell),
         cmocka_unit_test(a_closed_shell_needs_no_remedy),
         cmocka_unit_test(a_tangle_of_rods_is_not_called_hollow),
         cmocka_unit_test(the_ground_is_told_for_a_hall_without_a_floor),
