@@ -4,6 +4,7 @@
 #include "alpha.h"
 #include "companion.h"
 #include "image_module.h"
+#include "png_strip.h"
 #include "source.h"
 #include "text.h"
 
@@ -310,8 +311,19 @@ pvtStatus pvtDecodeAlpha(pvtContext* context, const char* label, const uint8_t* 
         return pvtFail(context, PVT_UNSUPPORTED, "%s is neither PNG, JPEG nor WebP", label);
     }
     // JPEG has no alpha: there is no need to look into it.
-    return strcmp(format, "jpeg") == 0 ? PVT_OK
-                                       : DecodeAlpha(context, format, label, bytes, size, alpha);
+    if (strcmp(format, "jpeg") == 0) {
+        return PVT_OK;
+    }
+    if (strcmp(format, "png") != 0) {
+        return DecodeAlpha(context, format, label, bytes, size, alpha);
+    }
+    pvtSource png;
+    pvtStatus status = pvtStripPng(context, label, bytes, size, &png);
+    if (status == PVT_OK) {
+        status = DecodeAlpha(context, format, label, png.bytes, png.size, alpha);
+        pvtSource_Free(context, &png);
+    }
+    return status;
 }
 
 void pvtAlpha_Free(pvtContext* context, pvtAlpha* alpha)

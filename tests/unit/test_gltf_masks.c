@@ -120,6 +120,35 @@ static size_t ReadAll(Fixture* f, const char* name, uint8_t* bytes, size_t room)
     return size;
 }
 
+static void PutWord(uint8_t* at, uint32_t word)
+{
+    for (int i = 0; i < 4; ++i) {
+        at[i] = (uint8_t)(word >> (24 - 8 * i));
+    }
+}
+
+// Length, type and checksum around a chunk's data.
+static void SealChunk(uint8_t* chunk, const char* type, uint32_t length)
+{
+    PutWord(chunk, length);
+    memcpy(chunk + 4, type, 4);
+    uint32_t crc = UINT32_MAX;
+    for (uint32_t i = 4; i < 8 + length; ++i) {
+        crc ^= chunk[i];
+        for (int bit = 0; bit < 8; ++bit) {
+            crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xEDB88320u : 0);
+        }
+    }
+    PutWord(chunk + 8 + length, ~crc);
+}
+
+static void ClaimSide(uint8_t* png, uint32_t side)
+{
+    PutWord(png + 16, side);
+    PutWord(png + 20, side);
+    SealChunk(png + 8, "IHDR", 13);
+}
+
 // The card lies in the plane z = 0 and faces z.
 static double GetArea(const pvtMesh* mesh)
 {
@@ -337,6 +366,23 @@ static void factor_vertices_and_cutoff_decide_with_the_texture(void** state)
 }
 
 // It may be a leaf, whose texture was taken off: as without its image.
+static void what_else_a_png_holds_does_not_matter(void** state)
+{
+    Fixture* f = *state;
+    WriteHalf(f, "mask.png");
+    uint8_t png[4096], more[4096];
+    const size_t size = ReadAll(f, "mask.png", png, sizeof png);
+    // Behind the header a profile that is none, which libpng would comment on.
+    memcpy(more, png, 33);
+    memset(more + 33, 'x', 100);
+    SealChunk(more + 33, "iCCP", 88);
+    memcpy(more + 133, png + 33, size - 33);
+    WriteBytes(InFolder(&f->folder, "mask.png"), more, size + 100);
+    const Card card = {0};
+    CheckArea(f, &card, kHalf);
+    assert_string_equal(f->warnings.text, "");
+}
+
 static void a_mask_without_a_texture_is_left_out(void** state)
 {
     Fixture* f = *state;
@@ -361,8 +407,10 @@ static void without_its_image_a_mask_is_left_out_with_the_reason(void** state)
     WriteBytes(InFolder(&f->folder, "cut.png"), png, size - 20);
     WriteText(InFolder(&f->folder, "text.png"), "this is no picture, whatever its name says");
     WriteBytes(InFolder(&f->folder, "leaf.ktx2"), "\xabKTX 20\xbb\r\n\x1a\n", 12);
-    memset(png + 16, 0, 8); // its size
-    png[18] = png[22] = 0x75;
+    png[60] ^= 1;
+    WriteBytes(InFolder(&f->folder, "bent.png"), png, size);
+    png[60] ^= 1;
+    ClaimSide(png, 30000);
     WriteBytes(InFolder(&f->folder, "liar.png"), png, size);
     const struct {
         const char *image, *reason;
@@ -370,10 +418,11 @@ static void without_its_image_a_mask_is_left_out_with_the_reason(void** state)
         {"'uri':'gone.png'", "images[0]: \"gone.png\" cannot be read"},
         {"'uri':'../gone.png'", "leaves the model's folder"},
         {"'uri':'http://example.com/x.png'", "nothing is fetched"},
-        {"'uri':'cut.png'", "images[0] \"cut.png\" cannot be read"},
+        {"'uri':'cut.png'", "images[0] \"cut.png\" cannot be read: it was cut short"},
+        {"'uri':'bent.png'", "it does not match its checksum"},
         {"'uri':'text.png'", "images[0] \"text.png\" is neither PNG, JPEG nor WebP"},
         {"'uri':'leaf.ktx2'", "images[0] \"leaf.ktx2\" is neither PNG, JPEG nor WebP"},
-        {"'uri':'liar.png'", "images[0] \"liar.png\" "},
+        {"'uri':'liar.png'", "images[0] \"liar.png\" claims 30000 × 30000 pixels"},
         {"'name':'bark'", "images[0] has neither uri nor bufferView"},
         {"'bufferView':0,'name':'bark'", "images[0] \"bark\" is neither PNG"},
     };
@@ -399,23 +448,14 @@ static void an_image_beyond_the_memory_limit_is_refused_as_such(void** state)
 {
     Fixture* f = *state;
     WriteHalf(f, "mask.png");
-    uint8_t* png = calloc(1, 200000);
+    uint8_t* png = calloc(1, 200012);
     assert_non_null(png);
-    (void)ReadAll(f, "mask.png", png, 4096);
-    // 32768 × 32768; the header's checksum to it.
-    memset(png + 16, 0, 8);
-    png[18] = png[22] = 0x80;
-    uint32_t crc = UINT32_MAX;
-    for (int i = 12; i < 29; ++i) {
-        crc ^= png[i];
-        for (int bit = 0; bit < 8; ++bit) {
-            crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xEDB88320u : 0);
-        }
-    }
-    for (int i = 0; i < 4; ++i) {
-        png[29 + i] = (uint8_t)(~crc >> (24 - 8 * i));
-    }
-    WriteBytes(InFolder(&f->folder, "mask.png"), png, 200000);
+    const size_t size = ReadAll(f, "mask.png", png, 4096);
+    ClaimSide(png, 32768);
+    // Room for as much, in front of the end.
+    SealChunk(png + size - 12, "IDAT", (uint32_t)(200000 - size));
+    memcpy(png + 200000, "\0\0\0\0IEND\xae\x42\x60\x82", 12);
+    WriteBytes(InFolder(&f->folder, "mask.png"), png, 200012);
     free(png);
     const Card card = {0};
     CheckRefused(f, LoadCard(f, &card), PVT_LIMIT, "--masked skip");
@@ -538,6 +578,7 @@ int main(void)
         TEST(wrap_modes_say_what_lies_beyond_the_image),
         TEST(texture_coordinates_are_taken_as_the_material_says),
         TEST(factor_vertices_and_cutoff_decide_with_the_texture),
+        TEST(what_else_a_png_holds_does_not_matter),
         TEST(a_mask_without_a_texture_is_left_out),
         TEST(without_its_image_a_mask_is_left_out_with_the_reason),
         TEST(an_image_beyond_the_memory_limit_is_refused_as_such),
