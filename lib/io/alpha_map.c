@@ -183,6 +183,6 @@ double pvtAlphaMap_GetBorder(const pvtAlphaMap* map, int axis, int level, int64_
         return cell <= 0 ? -INFINITY : INFINITY;
     }
     const size_t place = pvtAlphaMap_GetPlace(map, axis, level, cell);
-    const double repetition = (double)((cell - (int64_t)place) / count);
-    return a->origin + repetition * (double)a->count + (double)(place << level);
+    const int64_t repetition = (cell - (int64_t)place) / count;
+    return a->origin + (double)repetition * (double)a->count + (double)(place << level);
 }

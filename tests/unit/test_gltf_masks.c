@@ -87,7 +87,7 @@ static pvtStatus LoadCardWith(Fixture* f, const Card* card, const void* bytes, s
 
 static pvtStatus LoadCard(Fixture* f, const Card* card)
 {
-    return LoadCardWith(f, card, NULL, 0);
+    return LoadCardWith(f, card, "", 0);
 }
 
 // An image in the folder; `alpha` has one character a texel, of which '#' is opaque, '+' has alpha
