@@ -117,6 +117,22 @@ static void primitives_are_told_apart(void** state)
     FreeCube(cube);
 }
 
+// Data that was a strip is stored as a list, and its indices' count says nothing of it.
+static void a_strip_is_read_as_the_list_that_it_is_stored_as(void** state)
+{
+    Fixture* f = *state;
+    Cube* cube = MakeCube();
+    char json[2048], strip[2048];
+    PrintCube(cube, false, json);
+    const char* at = strstr(json, "'indices':1,");
+    assert_non_null(at);
+    (void)snprintf(strip, sizeof strip, "%.*s'mode':5,%s", (int)(at - json), json, at);
+    CHECK_OK(f->context, LoadGlb(f, strip, &cube->pack));
+    assert_int_equal(f->model.mesh.triangleCount, 12);
+    CHECK_NEAR(GetSignedVolume(&f->model.mesh), 1.0, 0.0);
+    FreeCube(cube);
+}
+
 typedef struct Lie {
     const char* truth;
     const char* lie;
@@ -377,6 +393,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(a_compressed_cube_is_the_cube),
         TEST(primitives_are_told_apart),
+        TEST(a_strip_is_read_as_the_list_that_it_is_stored_as),
         TEST(what_the_file_says_of_its_streams_is_checked),
         TEST(a_point_cloud_is_refused),
         TEST(damaged_streams_do_no_harm),
