@@ -147,7 +147,7 @@ const pvtSyntax pvtLadderSyntax = {
         "shown. The last is 0, so that the coarsest level stays.\n"
         "Examples:\n"
         "  paravent ladder house.glb -o house_ladder.glb --ground --with-original\n"
-        "  paravent ladder bunny.glb -o bunny.glb --errors 0.01,0.05,0.2 --budgets 100,40,10\n"
+        "  paravent ladder bunny.glb -o lods.glb --errors 0.01,0.05,0.2 --budgets 90,40,9\n"
         "Exit codes: 0 done, 1 wrong command line, 2 invalid input, 3 feature missing here, "
         "4 output cannot be written, 5 nothing to occlude with, 6 limit reached, 130 cancelled.",
 };

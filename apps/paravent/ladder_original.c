@@ -20,9 +20,11 @@ pvtStatus pvtCutOriginal(pvtRun* run, const pvtModel* model, pvtOriginalParts* p
     *parts = (pvtOriginalParts){0};
     parts->meshes = calloc(model->partCount, sizeof *parts->meshes);
     parts->items = calloc(model->partCount, sizeof *parts->items);
-    pvtStatus status = parts->meshes != NULL && parts->items != NULL
-                           ? PVT_OK
-                           : pvtRun_Fail(run, PVT_OUT_OF_MEMORY, "out of memory");
+    if (parts->meshes == NULL || parts->items == NULL) {
+        pvtOriginalParts_Free(run, parts);
+        return pvtRun_Fail(run, PVT_OUT_OF_MEMORY, "out of memory");
+    }
+    pvtStatus status = PVT_OK;
     for (size_t i = 0; i < model->partCount && status == PVT_OK; ++i) {
         const pvtModelPart* part = &model->parts[i];
         if (part->triangleCount == 0) {

@@ -197,6 +197,11 @@ pvtStatus pvtSaveLadderStats(pvtRun* run, const pvtLadderLine* options,
     return pvtCommitOutput(output);
 }
 
+static double GetPercentage(double part, double whole)
+{
+    return whole > 0.0 ? 100.0 * part / whole : 0.0;
+}
+
 void pvtPrintLadder(pvtRun* run, const pvtLadderLine* options, const pvtLadderResult* result)
 {
     const pvtLadder* ladder = &result->ladder;
@@ -205,16 +210,17 @@ void pvtPrintLadder(pvtRun* run, const pvtLadderLine* options, const pvtLadderRe
     pvtReport_Say(&run->report, "%s: %zu level%s, made from %s triangle%s",
                   options->generate.output, ladder->count, ladder->count == 1 ? "" : "s",
                   pvtFormatCount(trianglesIn, in), trianglesIn == 1 ? "" : "s");
-    pvtReport_Say(&run->report, "        triangles  error bound  voxels  measure  from distance  "
-                                "coverage");
+    pvtReport_Say(&run->report, "        triangles  error bound  voxels  of solid  of LOD0  "
+                                "from distance  coverage");
+    const double finest = ladder->levels[0].stats.measure;
     for (size_t i = 0; i < ladder->count; ++i) {
         const pvtLevel* level = &ladder->levels[i];
         const pvtBuildStats* stats = &level->stats;
-        const double share =
-            stats->measureOfSolid > 0.0 ? 100.0 * stats->measure / stats->measureOfSolid : 0.0;
-        pvtReport_Say(&run->report, "  LOD%zu  %9zu  %11.4g  %6d  %5.1f %%  %13.4g  %7.4f %%", i,
-                      level->occluder.mesh.triangleCount, stats->errorBound, stats->resolution,
-                      share, level->distance, 100.0 * level->screenCoverage);
+        pvtReport_Say(
+            &run->report, "  LOD%zu  %9zu  %11.4g  %6d  %6.1f %%  %5.0f %%  %13.4g  %7.4f %%", i,
+            level->occluder.mesh.triangleCount, stats->errorBound, stats->resolution,
+            GetPercentage(stats->measure, stats->measureOfSolid),
+            GetPercentage(stats->measure, finest), level->distance, 100.0 * level->screenCoverage);
     }
     pvtReport_Say(&run->report, "  time         %.2f s", result->saved - result->began);
 }

@@ -24,7 +24,7 @@ static pvtLadderOptions GetQuickOptions(void)
     options.build.views.count = 4;
     options.build.effort = PVT_EFFORT_FAST;
     options.levelCount = 3;
-    const double errors[] = {0.12, 0.4, 1.2};
+    const double errors[] = {0.2, 0.45, 1.2};
     memcpy(options.errors, errors, sizeof errors);
     const int budgets[] = {40, 16, 4};
     memcpy(options.budgets, budgets, sizeof budgets);
@@ -115,7 +115,7 @@ static void openings_close_as_voxels_grow(void** state)
     pvtMesh fence;
     MakeFence(context, &fence);
     pvtLadderOptions options = GetQuickOptions();
-    options.errors[1] = 0.16;
+    options.errors[1] = 0.24;
     pvtLadder ladder;
     CHECK_OK(context, pvtBuildLadder(context, &options, &fence, &ladder));
     const int fine = CountBlockedRays(&ladder.levels[0].occluder.mesh);
@@ -138,7 +138,7 @@ static void the_default_errors_double_and_the_default_budgets_halve(void** state
     pvtLadderOptions options = pvtDefaultLadderOptions();
     options.build.views.count = 2;
     options.build.effort = PVT_EFFORT_FAST;
-    options.build.resolution = 64;
+    options.build.resolution = 48;
     options.levelCount = 3;
     static const pvtLength holes[] = {{0.0, false}, {0.2, false}, {3.0, true}};
     for (size_t h = 0; h < sizeof holes / sizeof *holes; ++h) {
@@ -146,7 +146,7 @@ static void the_default_errors_double_and_the_default_budgets_halve(void** state
         pvtLadder ladder;
         CHECK_OK(context, pvtBuildLadder(context, &options, &box, &ladder));
         assert_int_equal(ladder.count, 3);
-        CHECK_NEAR(ladder.levels[0].stats.voxelSize, 4.0 / 64, 1e-12);
+        CHECK_NEAR(ladder.levels[0].stats.voxelSize, 4.0 / 48, 1e-12);
         assert_true(ladder.levels[0].stats.tolerance == 0.0);
         for (size_t i = 0; i < 3; ++i) {
             const pvtBuildStats* stats = &ladder.levels[i].stats;
