@@ -275,6 +275,30 @@ static void RunBuild(Run* run, const char* stage, pvtMethod method, pvtMesh* occ
     pvtOccluder_Free(context, &built);
 }
 
+// Distances stay out of the hash: the last bit of a tangent is not the same everywhere.
+static void RunLadder(Run* run)
+{
+    pvtContext* context = run->context;
+    pvtLadderOptions options = pvtDefaultLadderOptions();
+    options.build.resolution = RESOLUTION;
+    options.build.smallestHole = (pvtLength){run->hollow ? HOLE : 0.0, false};
+    options.build.ground = run->hollow;
+    options.build.views.count = VIEWS;
+    options.build.effort = PVT_EFFORT_FAST;
+    options.levelCount = 2;
+    options.budgets[0] = BUDGET;
+    options.budgets[1] = BUDGET / 2;
+    pvtLadder ladder;
+    CHECK_OK(context, pvtBuildLadder(context, &options, &run->mesh, &ladder));
+    uint64_t hash = HashNumber(HASH_START, ladder.count);
+    for (size_t i = 0; i < ladder.count; ++i) {
+        hash = HashMesh(hash, &ladder.levels[i].occluder.mesh);
+        hash = HashDouble(hash, ladder.levels[i].stats.errorBound);
+    }
+    Trail_Add(run->trail, "ladder", hash);
+    pvtLadder_Free(context, &ladder);
+}
+
 static void RunEvaluation(Run* run, const pvtMesh* occluder)
 {
     pvtContext* context = run->context;
@@ -328,6 +352,7 @@ static void RunModel(Trail* trail, const char* name, bool hollow, int threads)
     pvtMesh occluder = {0};
     RunBuild(&run, "build-planar", PVT_METHOD_PLANAR, &occluder);
     RunBuild(&run, "build-paper", PVT_METHOD_PAPER, &occluder);
+    RunLadder(&run);
     RunEvaluation(&run, &occluder);
     pvtMesh_Free(run.context, &occluder);
     FreeRun(&run);
