@@ -167,18 +167,10 @@ static pvtStatus CheckLevels(pvtContext* context, const pvtLevelSet* set)
     return status == PVT_OK && set->otherCount > 0 ? CheckItems(&others) : status;
 }
 
-pvtStatus pvtSaveLevels(pvtContext* context, const char* path, const pvtLevelSet* set)
+static pvtStatus WriteLevelFile(pvtContext* context, const char* path, const pvtLevelSet* set)
 {
-    if (!pvtCanSaveLevels(path)) {
-        return pvtFail(context, PVT_UNSUPPORTED,
-                       "%s: levels can be written only to names that end in .glb or .gltf", path);
-    }
-    pvtStatus status = CheckLevels(context, set);
-    if (status != PVT_OK) {
-        return status;
-    }
     pvtOutput* output = NULL;
-    status = pvtOpenOutput(context, path, &output);
+    pvtStatus status = pvtOpenOutput(context, path, &output);
     if (status != PVT_OK) {
         return status;
     }
@@ -188,4 +180,35 @@ pvtStatus pvtSaveLevels(pvtContext* context, const char* path, const pvtLevelSet
         return status;
     }
     return pvtCommitOutput(output);
+}
+
+pvtStatus pvtSaveLevels(pvtContext* context, const char* path, const pvtLevelSet* set)
+{
+    if (!pvtCanSaveLevels(path)) {
+        return pvtFail(context, PVT_UNSUPPORTED,
+                       "%s: levels can be written only to names that end in .glb or .gltf", path);
+    }
+    const pvtSaveJob levels = {context, set->levels, set->levelCount};
+    const pvtSaveJob others = {context, set->others, set->otherCount};
+    pvtPlacedItems placedLevels = {0};
+    pvtPlacedItems placedOthers = {0};
+    pvtStatus status = CheckLevels(context, set);
+    if (status == PVT_OK) {
+        status = pvtPlaceItems(&levels, true, &placedLevels);
+    }
+    if (status == PVT_OK) {
+        status = pvtPlaceItems(&others, true, &placedOthers);
+    }
+    if (status == PVT_OK) {
+        pvtLevelSet placed = *set;
+        placed.levels = placedLevels.items;
+        placed.others = placedOthers.items;
+        status = CheckLevels(context, &placed);
+        if (status == PVT_OK) {
+            status = WriteLevelFile(context, path, &placed);
+        }
+    }
+    pvtPlacedItems_Free(context, &placedLevels);
+    pvtPlacedItems_Free(context, &placedOthers);
+    return status;
 }

@@ -299,6 +299,28 @@ static void RunLadder(Run* run)
     pvtLadder_Free(context, &ladder);
 }
 
+// The model twice, the second time mirrored and half as wide, and what it is made of once.
+static void RunSeparate(Run* run)
+{
+    static const double mirrored[16] = {-0.5, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 9, 0, 0, 1};
+    static const double moved[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 9, 1};
+    const pvtInstance instances[] = {{0, moved, "a"}, {0, mirrored, "b"}};
+    const pvtInstanceSet set = {&run->mesh, 1, instances, 2};
+    pvtBuildOptions options = pvtDefaultBuildOptions();
+    options.budget = 2 * BUDGET;
+    options.resolution = RESOLUTION;
+    options.smallestHole = (pvtLength){run->hollow ? HOLE : 0.0, false};
+    options.ground = run->hollow;
+    options.views.count = VIEWS;
+    pvtSeparation separation;
+    CHECK_OK(run->context, pvtBuildSeparateOccluders(run->context, &options, &set, &separation));
+    assert_int_equal(separation.count, 1);
+    const pvtSeparateOccluder* occluder = &separation.occluders[0];
+    const uint64_t hash = HashDouble(HASH_START, occluder->stats.measureOfSolid);
+    Trail_Add(run->trail, "separate", HashMesh(hash, &occluder->mesh));
+    pvtSeparation_Free(run->context, &separation);
+}
+
 static void RunEvaluation(Run* run, const pvtMesh* occluder)
 {
     pvtContext* context = run->context;
@@ -353,6 +375,7 @@ static void RunModel(Trail* trail, const char* name, bool hollow, int threads)
     RunBuild(&run, "build-planar", PVT_METHOD_PLANAR, &occluder);
     RunBuild(&run, "build-paper", PVT_METHOD_PAPER, &occluder);
     RunLadder(&run);
+    RunSeparate(&run);
     RunEvaluation(&run, &occluder);
     pvtMesh_Free(run.context, &occluder);
     FreeRun(&run);

@@ -132,6 +132,36 @@ static void other_nodes_stand_in_front_of_the_levels(void** state)
     FreeLevels(f->context, &levels);
 }
 
+// A node has no shear: a copy of the mesh is moved.
+static void levels_and_others_stand_where_their_transforms_say(void** state)
+{
+    Fixture* f = *state;
+    static const double moved[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 30, 0, 0, 1};
+    static const double sheared[16] = {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 40, 0, 1};
+    Levels levels;
+    MakeLevels(f->context, &levels);
+    pvtSaveItem items[LEVELS];
+    memcpy(items, levels.set.levels, sizeof items);
+    items[0].transform = sheared;
+    const pvtSaveItem others[2] = {
+        {.name = "wall", .mesh = &levels.meshes[0], .transform = moved},
+        {.name = "roof", .mesh = &levels.meshes[0], .transform = sheared}};
+    levels.set.levels = items;
+    levels.set.others = others;
+    levels.set.otherCount = 2;
+    const char* path = InFolder(&f->folder, "levels.glb");
+    CHECK_OK(f->context, pvtSaveLevels(f->context, path, &levels.set));
+    CHECK_OK(f->context, pvtLoadModel(f->context, NULL, path, &f->model));
+    assert_int_equal(f->model.partCount, 3);
+    CHECK_NEAR(f->model.parts[0].transform[12], 30.0, 0.0);
+    for (size_t i = 1; i < 3; ++i) {
+        const size_t first = f->model.parts[i].firstTriangle;
+        const pvtVec3 p = f->model.mesh.positions[f->model.mesh.indices[3 * first]];
+        assert_true(p.y > 30.0);
+    }
+    FreeLevels(f->context, &levels);
+}
+
 static void a_single_level_needs_no_extension(void** state)
 {
     Fixture* f = *state;
@@ -327,6 +357,7 @@ int main(void)
         TEST(the_finest_node_names_the_others_and_alone_is_in_the_scene),
         TEST(plain_levels_are_all_in_the_scene),
         TEST(other_nodes_stand_in_front_of_the_levels),
+        TEST(levels_and_others_stand_where_their_transforms_say),
         TEST(a_single_level_needs_no_extension),
         TEST(a_gltf_original_comes_out_whole),
         TEST(an_original_without_a_scene_gets_one_with_its_roots),
