@@ -251,7 +251,7 @@ static double CountWanted(const Separate* separate)
 
 static pvtStatus RefuseShare(const Separate* separate, pvtSeparateOccluder* occluder)
 {
-    char text[160];
+    char text[256];
     const double wanted = CountWanted(separate);
     const int used = snprintf(
         text, sizeof text, "the budget of %d triangles is used up before its %zu instance%s",
@@ -259,6 +259,10 @@ static pvtStatus RefuseShare(const Separate* separate, pvtSeparateOccluder* occl
     if (wanted <= MAX_BUDGET) {
         (void)snprintf(text + used, sizeof text - (size_t)used,
                        "; --budget %.0f has two for every instance", wanted);
+    } else {
+        (void)snprintf(text + used, sizeof text - (size_t)used,
+                       ", and a budget is at most %d; take a part of the scene by --node",
+                       MAX_BUDGET);
     }
     occluder->result = PVT_SEPARATE_NO_SHARE;
     return GiveReason(separate, text, occluder);

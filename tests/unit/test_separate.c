@@ -271,6 +271,32 @@ static void meshes_without_an_occluder_are_told_and_stop_nobody(void** state)
     DestroyTestContext(context);
 }
 
+static void more_instances_than_any_budget_are_told_to_be_parted(void** state)
+{
+    (void)state;
+    enum { COUNT = 70000 };
+    pvtContext* context = CreateTestContext(1);
+    pvtMesh mesh = MakeBlock(context, (pvtVec3){1, 1, 1}, false);
+    pvtInstance* instances = calloc(COUNT, sizeof *instances);
+    assert_non_null(instances);
+    for (int i = 0; i < COUNT; ++i) {
+        instances[i] = (pvtInstance){0, kFar, "tree"};
+    }
+    const pvtInstanceSet set = {&mesh, 1, instances, COUNT};
+    pvtBuildOptions options = MakeOptions();
+    options.budget = 0;
+    pvtSeparation separation;
+    assert_int_equal(pvtBuildSeparateOccluders(context, &options, &set, &separation),
+                     PVT_NOTHING_INSIDE);
+    assert_non_null(strstr(pvtContext_GetMessage(context),
+                           "\"tree\" and 69999 more of its mesh: the budget of 65535 triangles is "
+                           "used up before its 70000 instances, and a budget is at most 65535; "
+                           "take a part of the scene by --node"));
+    free(instances);
+    pvtMesh_Free(context, &mesh);
+    DestroyTestContext(context);
+}
+
 enum { MANY = 5 };
 
 // Different blocks, so many that they are made side by side.
@@ -455,6 +481,7 @@ int main(void)
         cmocka_unit_test(the_ground_is_below_the_instance_not_the_mesh),
         cmocka_unit_test(an_occluder_comes_back_to_the_space_of_its_mesh),
         cmocka_unit_test(meshes_without_an_occluder_are_told_and_stop_nobody),
+        cmocka_unit_test(more_instances_than_any_budget_are_told_to_be_parted),
         cmocka_unit_test(the_same_comes_out_on_any_number_of_threads),
         cmocka_unit_test(a_deadline_ends_all_with_what_there_is),
         cmocka_unit_test(progress_is_that_of_the_whole),
