@@ -134,22 +134,27 @@ class MeshCutter
         }
     }
 
+    std::uint32_t AddPoint(const GltfCard& card, const pvtPiecePoint& point)
+    {
+        const std::size_t corner = static_cast<std::size_t>(std::max(point.corner, 0));
+        return point.corner >= 0 ? AddPosition(source_.indices[3 * card.triangle + corner])
+                                 : AddPosition(point.position);
+    }
+
     // Convex: a fan.
     void AddPiece(const GltfCard& card, const pvtPiece& piece)
     {
-        std::uint32_t places[PVT_MAX_PIECE_POINTS];
-        for (int i = 0; i < piece.count; ++i) {
-            const pvtPiecePoint& point = piece.points[i];
-            const std::size_t corner = static_cast<std::size_t>(std::max(point.corner, 0));
-            places[i] = point.corner >= 0 ? AddPosition(source_.indices[3 * card.triangle + corner])
-                                          : AddPosition(point.position);
+        const pvtPiecePoint* points = owned_.set.points + piece.first;
+        const std::uint32_t first = AddPoint(card, points[0]);
+        std::uint32_t before = AddPoint(card, points[1]);
+        for (std::size_t i = 2; i < piece.count; ++i) {
+            const std::uint32_t at = AddPoint(card, points[i]);
+            for (const std::uint32_t place : {first, before, at}) {
+                result_.indices.Push(place);
+            }
+            before = at;
         }
-        pieceTriangles_ += static_cast<std::size_t>(piece.count - 2);
-        for (int i = 2; i < piece.count; ++i) {
-            result_.indices.Push(places[0]);
-            result_.indices.Push(places[i - 1]);
-            result_.indices.Push(places[i]);
-        }
+        pieceTriangles_ += piece.count - 2;
     }
 
     pvtContext* context_;

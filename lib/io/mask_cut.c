@@ -36,7 +36,7 @@ typedef struct Cut {
 
 // A polygon while it is clipped: four borders add a point each. Rounding could add more, where
 // edges are hardly longer than it; such a polygon is dropped.
-enum { CLIP_ROOM = PVT_MAX_PIECE_POINTS };
+enum { CLIP_ROOM = 7 };
 
 typedef struct ClipPoint {
     pvtVec3 position;
@@ -52,6 +52,8 @@ typedef struct Polygon {
 void pvtPieceSet_Free(pvtContext* context, pvtPieceSet* set)
 {
     pvtRelease(context, set->pieces);
+    pvtRelease(context, set->points);
+    pvtRelease(context, set->breaks);
     pvtRelease(context, set->runs[0]);
     pvtRelease(context, set->runs[1]);
     *set = (pvtPieceSet){0};
@@ -111,40 +113,126 @@ static Polygon GetTriangle(const pvtMaskedTriangle* triangle)
     return polygon;
 }
 
-static pvtStatus AddPiece(Cut* cut, const Polygon* polygon)
+// Room for one more element behind `count`.
+static pvtStatus Grow(pvtContext* context, void** array, size_t count, size_t* room, size_t size)
+{
+    if (count < *room) {
+        return PVT_OK;
+    }
+    const size_t wanted = *room == 0 ? FIRST_ROOM : 2 * *room;
+    void* grown = pvtReallocate(context, *array, wanted, size);
+    if (grown == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    *array = grown;
+    *room = wanted;
+    return PVT_OK;
+}
+
+static pvtStatus AddPoint(Cut* cut, pvtVec3 position, int corner)
+{
+    pvtPieceSet* set = cut->set;
+    void* points = set->points;
+    const pvtStatus status =
+        Grow(cut->context, &points, set->pointCount, &set->pointRoom, sizeof *set->points);
+    set->points = points;
+    if (status == PVT_OK) {
+        set->points[set->pointCount++] = (pvtPiecePoint){position, corner};
+    }
+    return status;
+}
+
+static pvtStatus AddBreak(Cut* cut, int64_t column)
+{
+    pvtPieceSet* set = cut->set;
+    void* breaks = set->breaks;
+    const pvtStatus status =
+        Grow(cut->context, &breaks, set->breakCount, &set->breakRoom, sizeof *set->breaks);
+    set->breaks = breaks;
+    if (status == PVT_OK) {
+        set->breaks[set->breakCount++] = column;
+    }
+    return status;
+}
+
+// Where runs of a neighbouring row begin and end along a run. Rows are gone through from the left:
+// `next` is the first of `others` that may still matter.
+static pvtStatus FindBreaks(Cut* cut, const pvtAlphaRun* run, int others, size_t* next)
+{
+    const pvtAlphaRun* runs = cut->set->runs[others];
+    const size_t count = cut->runCounts[others];
+    while (*next < count && runs[*next].end <= run->begin) {
+        ++*next;
+    }
+    pvtStatus status = PVT_OK;
+    for (size_t i = *next; i < count && runs[i].begin < run->end && status == PVT_OK; ++i) {
+        if (runs[i].begin > run->begin) {
+            status = AddBreak(cut, runs[i].begin);
+        }
+        if (runs[i].end < run->end && status == PVT_OK) {
+            status = AddBreak(cut, runs[i].end);
+        }
+    }
+    return status;
+}
+
+// The breaks first to first + count − 1 on the edge a–b, from a on.
+static pvtStatus AddBreakPoints(Cut* cut, const ClipPoint* a, const ClipPoint* b,
+                                const pvtAlphaRun* range)
+{
+    const bool isRising = a->texel[0] < b->texel[0];
+    pvtStatus status = PVT_OK;
+    for (size_t i = 0; i < range->breakCount && status == PVT_OK; ++i) {
+        const size_t at = range->firstBreak + (isRising ? i : range->breakCount - 1 - i);
+        const double x = pvtAlphaMap_GetBorder(cut->map, 0, cut->level, cut->set->breaks[at]);
+        if (x > fmin(a->texel[0], b->texel[0]) && x < fmax(a->texel[0], b->texel[0])) {
+            status = AddPoint(cut, Meet(a, b, 0, x).position, -1);
+        }
+    }
+    return status;
+}
+
+// `run` has the breaks along its first row's border, `above` those along its last one's.
+static pvtStatus AddPiece(Cut* cut, const Polygon* polygon, const pvtAlphaRun* run,
+                          const pvtAlphaRun* above)
 {
     pvtPieceSet* set = cut->set;
     if (set->count == cut->rules->maxPieces) {
         set->isTooMany = true;
         return PVT_OK;
     }
-    if (set->count == set->room) {
-        const size_t room = set->room == 0 ? FIRST_ROOM : 2 * set->room;
-        pvtPiece* grown = pvtReallocate(cut->context, set->pieces, room, sizeof *grown);
-        if (grown == NULL) {
-            return pvtContext_GetStatus(cut->context);
+    void* pieces = set->pieces;
+    pvtStatus status =
+        Grow(cut->context, &pieces, set->count, &set->pieceRoom, sizeof *set->pieces);
+    set->pieces = pieces;
+    const double low = pvtAlphaMap_GetBorder(cut->map, 1, cut->level, run->row);
+    const double high = pvtAlphaMap_GetBorder(cut->map, 1, cut->level, above->row);
+    const size_t first = set->pointCount;
+    for (int i = 0; i < polygon->count && status == PVT_OK; ++i) {
+        const ClipPoint* a = &polygon->points[i];
+        const ClipPoint* b = &polygon->points[(i + 1) % polygon->count];
+        status = AddPoint(cut, a->position, a->corner);
+        if (status == PVT_OK && a->texel[1] == b->texel[1] &&
+            (a->texel[1] == low || a->texel[1] == high)) {
+            status = AddBreakPoints(cut, a, b, a->texel[1] == low ? run : above);
         }
-        set->pieces = grown;
-        set->room = room;
     }
-    pvtPiece* piece = &set->pieces[set->count++];
-    piece->count = polygon->count;
-    for (int i = 0; i < polygon->count; ++i) {
-        piece->points[i] = (pvtPiecePoint){polygon->points[i].position, polygon->points[i].corner};
+    if (status == PVT_OK) {
+        set->pieces[set->count++] = (pvtPiece){first, set->pointCount - first};
     }
-    return PVT_OK;
+    return status;
 }
 
-// The part of the triangle in a run's columns, from the run's first row up to `end`.
-static pvtStatus CutRun(Cut* cut, const pvtAlphaRun* run, int64_t end)
+// The part of the triangle in a run's columns, from the run's first row up to that of `above`.
+static pvtStatus CutRun(Cut* cut, const pvtAlphaRun* run, const pvtAlphaRun* above)
 {
     const pvtAlphaMap* map = cut->map;
     Polygon polygon = GetTriangle(cut->triangle);
     Clip(&polygon, 1, pvtAlphaMap_GetBorder(map, 1, cut->level, run->row), 1.0);
-    Clip(&polygon, 1, pvtAlphaMap_GetBorder(map, 1, cut->level, end), -1.0);
+    Clip(&polygon, 1, pvtAlphaMap_GetBorder(map, 1, cut->level, above->row), -1.0);
     Clip(&polygon, 0, pvtAlphaMap_GetBorder(map, 0, cut->level, run->begin), 1.0);
     Clip(&polygon, 0, pvtAlphaMap_GetBorder(map, 0, cut->level, run->end), -1.0);
-    return polygon.count >= 3 ? AddPiece(cut, &polygon) : PVT_OK;
+    return polygon.count >= 3 ? AddPiece(cut, &polygon, run, above) : PVT_OK;
 }
 
 // The opaque runs of a row within the box.
@@ -162,7 +250,7 @@ static void FindRuns(Cut* cut, int64_t row, int which)
     for (int64_t column = cut->first[0]; column <= cut->last[0]; ++column) {
         const bool isOpaque = cells[place] >= threshold;
         if (isOpaque && !wasOpaque) {
-            runs[count] = (pvtAlphaRun){column, column, row};
+            runs[count] = (pvtAlphaRun){.begin = column, .end = column, .row = row};
         }
         if (!isOpaque && wasOpaque) {
             runs[count++].end = column;
@@ -176,12 +264,26 @@ static void FindRuns(Cut* cut, int64_t row, int which)
     cut->runCounts[which] = count;
 }
 
-// Runs of the row before that go on take their first row along; the others are done.
+// A run of the row before that does not go on: with the breaks of this row along its last border.
+static pvtStatus FinishRun(Cut* cut, const pvtAlphaRun* run, int64_t row, int which, size_t* next)
+{
+    pvtPieceSet* set = cut->set;
+    pvtAlphaRun above = {.row = row, .firstBreak = set->breakCount};
+    pvtStatus status = FindBreaks(cut, run, which, next);
+    above.breakCount = set->breakCount - above.firstBreak;
+    if (status == PVT_OK) {
+        status = CutRun(cut, run, &above);
+    }
+    set->breakCount = above.firstBreak;
+    return status;
+}
+
+// Runs of the row before that go on hand over what is known of them; the others are done.
 static pvtStatus JoinRows(Cut* cut, int64_t row, int which)
 {
     const pvtAlphaRun* before = cut->set->runs[1 - which];
     pvtAlphaRun* runs = cut->set->runs[which];
-    size_t next = 0;
+    size_t next = 0, nextAbove = 0, nextBelow = 0;
     pvtStatus status = PVT_OK;
     for (size_t i = 0; i < cut->runCounts[1 - which] && status == PVT_OK; ++i) {
         while (next < cut->runCounts[which] && runs[next].begin < before[i].begin) {
@@ -189,9 +291,16 @@ static pvtStatus JoinRows(Cut* cut, int64_t row, int which)
         }
         if (next < cut->runCounts[which] && runs[next].begin == before[i].begin &&
             runs[next].end == before[i].end) {
-            runs[next].row = before[i].row;
+            runs[next] = before[i];
         } else {
-            status = CutRun(cut, &before[i], row);
+            status = FinishRun(cut, &before[i], row, which, &nextAbove);
+        }
+    }
+    for (size_t i = 0; i < cut->runCounts[which] && status == PVT_OK; ++i) {
+        if (runs[i].row == row) {
+            runs[i].firstBreak = cut->set->breakCount;
+            status = FindBreaks(cut, &runs[i], 1 - which, &nextBelow);
+            runs[i].breakCount = cut->set->breakCount - runs[i].firstBreak;
         }
     }
     return status;
@@ -303,7 +412,7 @@ pvtStatus pvtCutMaskedTriangle(pvtContext* context, const pvtAlphaMap* map,
                                const pvtCutRules* rules, const pvtMaskedTriangle* triangle,
                                pvtPieceSet* set)
 {
-    set->count = 0;
+    set->count = set->pointCount = set->breakCount = 0;
     set->isTooMany = false;
     set->isWhole = map->least >= triangle->threshold;
     if (set->isWhole || map->most < triangle->threshold || !AreTexelsNear(triangle)) {

@@ -32,28 +32,32 @@ typedef struct pvtPiecePoint {
     int corner; ///< of the triangle, 0 to 2; −1 for a point between them
 } pvtPiecePoint;
 
-enum { PVT_MAX_PIECE_POINTS = 7 };
-
-/// A convex polygon, wound as its triangle.
+/// A convex polygon, wound as its triangle. Wherever a corner of another piece lies on one of its
+/// edges there is a point, so that no crack opens between them when they are drawn; a fan around
+/// its first point keeps it so.
 typedef struct pvtPiece {
-    pvtPiecePoint points[PVT_MAX_PIECE_POINTS];
-    int count;
+    size_t first; ///< among the set's points
+    size_t count;
 } pvtPiece;
 
 /// Opaque cells of one row side by side, or of several rows that are alike.
 typedef struct pvtAlphaRun {
-    int64_t begin, end; ///< columns
-    int64_t row;        ///< the first
+    int64_t begin, end;            ///< columns
+    int64_t row;                   ///< the first
+    size_t firstBreak, breakCount; ///< where runs of the row before it begin and end along it
 } pvtAlphaRun;
 
 /// What came of one triangle, with the room for it. Zero to begin with; to be used again.
 typedef struct pvtPieceSet {
     pvtPiece* pieces;
-    size_t count, room;
+    pvtPiecePoint* points;
+    size_t count, pointCount;
     bool isWhole;   ///< opaque throughout; there are no pieces then
     bool isTooMany; ///< more than the rules allow: look less closely
+    size_t pieceRoom, pointRoom;
     pvtAlphaRun* runs[2];
-    size_t runRoom;
+    int64_t* breaks;
+    size_t runRoom, breakCount, breakRoom;
     size_t cellCount; ///< cells that were looked at, over all triangles
 } pvtPieceSet;
 

@@ -49,11 +49,12 @@ static double DistanceToBorder(const double texel[2])
 
 // In the plane of the test triangles, whose positions are (x, y, 0). Winding is checked too: a
 // piece is turned as its triangle.
-static bool IsInPiece(const pvtPiece* piece, double x, double y)
+static bool IsInPiece(const pvtPieceSet* set, size_t index, double x, double y)
 {
-    for (int i = 0; i < piece->count; ++i) {
-        const pvtVec3 a = piece->points[i].position;
-        const pvtVec3 b = piece->points[(i + 1) % piece->count].position;
+    const pvtPiece* piece = &set->pieces[index];
+    for (size_t i = 0; i < piece->count; ++i) {
+        const pvtVec3 a = set->points[piece->first + i].position;
+        const pvtVec3 b = set->points[piece->first + (i + 1) % piece->count].position;
         if ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) < 0.0) {
             return false;
         }
@@ -109,7 +110,7 @@ static int CountPieces(const Case* c, double x, double y)
 {
     int count = c->set.isWhole ? 1 : 0;
     for (size_t i = 0; i < c->set.count; ++i) {
-        count += IsInPiece(&c->set.pieces[i], x, y) ? 1 : 0;
+        count += IsInPiece(&c->set, i, x, y) ? 1 : 0;
     }
     return count;
 }
@@ -162,6 +163,53 @@ static void pieces_are_just_what_is_opaque(void** state)
     DestroyTestContext(context);
 }
 
+// Whether p lies on the edge a–b, away from its ends.
+static bool IsOnEdge(pvtVec3 a, pvtVec3 b, pvtVec3 p)
+{
+    const double dx = b.x - a.x, dy = b.y - a.y;
+    const double length = hypot(dx, dy);
+    const double along = ((p.x - a.x) * dx + (p.y - a.y) * dy) / length;
+    const double across = fabs((p.x - a.x) * dy - (p.y - a.y) * dx) / length;
+    return across < 1e-10 && along > 1e-7 && along < length - 1e-7;
+}
+
+static void CheckEdges(const pvtPieceSet* set, const pvtPiece* piece)
+{
+    for (size_t i = 0; i < piece->count; ++i) {
+        const pvtVec3 a = set->points[piece->first + i].position;
+        const pvtVec3 b = set->points[piece->first + (i + 1) % piece->count].position;
+        for (size_t k = 0; k < set->pointCount; ++k) {
+            if (IsOnEdge(a, b, set->points[k].position)) {
+                fail_msg("point %zu lies on an edge that has no point there", k);
+            }
+        }
+    }
+}
+
+static void pieces_meet_point_to_point(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtRandom random = pvtMakeRandom(11, 1);
+    Case* c = calloc(1, sizeof *c);
+    assert_non_null(c);
+    size_t added = 0;
+    for (int i = 0; i < 100; ++i) {
+        MakeRandomCase(context, &random, c);
+        const pvtCutRules rules = {0.02 * (i % 3), 0, 10000};
+        CHECK_OK(context, pvtCutMaskedTriangle(context, &c->map, &rules, &c->triangle, &c->set));
+        for (size_t k = 0; k < c->set.count; ++k) {
+            CheckEdges(&c->set, &c->set.pieces[k]);
+            added += c->set.pieces[k].count > 7 ? 1 : 0;
+        }
+        pvtAlphaMap_Free(context, &c->map);
+    }
+    assert_true(added > 10);
+    pvtPieceSet_Free(context, &c->set);
+    free(c);
+    DestroyTestContext(context);
+}
+
 // Two columns of 4 × 4 texels, the left ones opaque.
 static const uint8_t kHalf[16] = {255, 255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0};
 
@@ -180,10 +228,10 @@ static double GetPieceArea(const pvtPieceSet* set)
 {
     double sum = set->isWhole ? 1.0 : 0.0;
     for (size_t i = 0; i < set->count; ++i) {
-        const pvtPiece* piece = &set->pieces[i];
-        for (int k = 2; k < piece->count; ++k) {
-            const pvtVec3 a = piece->points[0].position, b = piece->points[k - 1].position;
-            const pvtVec3 c = piece->points[k].position;
+        const pvtPiecePoint* points = set->points + set->pieces[i].first;
+        for (size_t k = 2; k < set->pieces[i].count; ++k) {
+            const pvtVec3 a = points[0].position, b = points[k - 1].position;
+            const pvtVec3 c = points[k].position;
             sum += (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
         }
     }
@@ -324,6 +372,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pieces_are_just_what_is_opaque),
+        cmocka_unit_test(pieces_meet_point_to_point),
         cmocka_unit_test(odd_texture_coordinates_never_add_surface),
         cmocka_unit_test(endless_repetition_is_all_or_nothing),
         cmocka_unit_test(stripes_become_one_piece_each),
