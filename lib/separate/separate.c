@@ -41,7 +41,8 @@ typedef struct Separate {
     Job* jobs; // the long ones first, so that no thread is left with one at the end
     size_t jobCount;
     int crewSize;
-    atomic_size_t begun; // of the jobs
+    atomic_size_t begun;   // of the jobs
+    atomic_size_t invalid; // meshes that cannot be used at all, such as a point
 } Separate;
 
 static int CompareJobs(const void* left, const void* right)
@@ -122,11 +123,14 @@ static bool IsHollow(pvtStatus status)
 }
 
 // One mesh without an inside is no reason to fail: it is told why, and the others go on.
-static pvtStatus TakeHollow(const Separate* separate, const pvtContext* context, pvtStatus status,
+static pvtStatus TakeHollow(Separate* separate, const pvtContext* context, pvtStatus status,
                             pvtSeparateOccluder* occluder)
 {
     if (!IsHollow(status)) {
         return status;
+    }
+    if (status == PVT_INVALID_INPUT) {
+        atomic_fetch_add(&separate->invalid, 1);
     }
     occluder->result = PVT_SEPARATE_HOLLOW;
     return GiveReason(separate, pvtContext_GetMessage(context), occluder);
@@ -369,6 +373,25 @@ static void TellMissing(pvtContext* context, Separate* separate, size_t missing)
     }
 }
 
+// A file whose meshes all cannot be used is not valid; else it has nothing to occlude with.
+static pvtStatus FailWithout(pvtContext* context, Separate* separate)
+{
+    const size_t count = separate->out.count;
+    const pvtStatus status =
+        atomic_load(&separate->invalid) == count ? PVT_INVALID_INPUT : PVT_NOTHING_INSIDE;
+    char name[128];
+    if (count == 0) {
+        return pvtFail(context, PVT_NOTHING_INSIDE,
+                       "every instance is flattened by its transform, so that nothing is inside");
+    }
+    NameJob(0, name, sizeof name, separate);
+    if (count == 1) {
+        return pvtFail(context, status, "%s: %s", name, separate->out.occluders[0].reason);
+    }
+    return pvtFail(context, status, "none of the %zu meshes gets an occluder; of the first, %s: %s",
+                   count, name, separate->out.occluders[0].reason);
+}
+
 // What has no occluder is told, in the order of the instances; without any the run has failed.
 static pvtStatus TellStep(pvtContext* context, Separate* separate)
 {
@@ -378,16 +401,8 @@ static pvtStatus TellStep(pvtContext* context, Separate* separate)
         made += occluder->result == PVT_SEPARATE_MADE ? 1 : 0;
         separate->jobs[i] = (Job){i, 0.0};
     }
-    char name[128];
-    if (made == 0 && separate->out.count == 0) {
-        return pvtFail(context, PVT_NOTHING_INSIDE,
-                       "every instance is flattened by its transform, so that nothing is inside");
-    }
     if (made == 0) {
-        NameJob(0, name, sizeof name, separate);
-        return pvtFail(context, PVT_NOTHING_INSIDE,
-                       "none of the %zu meshes gets an occluder; of the first, %s: %s",
-                       separate->out.count, name, separate->out.occluders[0].reason);
+        return FailWithout(context, separate);
     }
     TellMissing(context, separate, separate->out.count - made);
     return PVT_OK;

@@ -265,6 +265,13 @@ static void meshes_without_an_occluder_are_told_and_stop_nobody(void** state)
                      PVT_NOTHING_INSIDE);
     assert_null(separation.occluders);
     assert_non_null(strstr(pvtContext_GetMessage(context), "\"sail\": "));
+    const pvtInstanceSet empty = {meshes, 4, instances + 5, 1};
+    assert_int_equal(pvtBuildSeparateOccluders(context, &options, &empty, &separation),
+                     PVT_INVALID_INPUT);
+    const pvtInstance flat = {1, kFlat, "flat"};
+    const pvtInstanceSet flattened = {meshes, 4, &flat, 1};
+    assert_int_equal(pvtBuildSeparateOccluders(context, &options, &flattened, &separation),
+                     PVT_NOTHING_INSIDE);
     for (int i = 0; i < 4; ++i) {
         pvtMesh_Free(context, &meshes[i]);
     }

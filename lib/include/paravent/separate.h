@@ -84,7 +84,8 @@ typedef struct pvtSeparation {
 /// from a list are turned into the mesh's space for as many instances as 64 views allow. The
 /// deadline is that of the whole.
 ///
-/// Warnings name the instance. PVT_NOTHING_INSIDE when no mesh gets an occluder.
+/// Warnings name the instance. PVT_NOTHING_INSIDE when no mesh gets an occluder, PVT_INVALID_INPUT
+/// when none has any extent.
 PVT_API pvtStatus pvtBuildSeparateOccluders(pvtContext* context, const pvtBuildOptions* options,
                                             const pvtInstanceSet* set, pvtSeparation* separation);
 PVT_API void pvtSeparation_Free(pvtContext* context, pvtSeparation* separation);
