@@ -500,6 +500,27 @@ static void coarser_looks_only_ever_lose_surface(void** state)
     assert_int_equal(LoadCard(f, &card), PVT_INVALID_ARGUMENT);
 }
 
+// Two cards far apart: cells of the scene are larger than they are, cells of their own are not.
+static void a_mesh_that_is_kept_is_looked_at_by_itself(void** state)
+{
+    Fixture* f = *state;
+    WriteHalf(f, "mask.png");
+    const Card card = {0};
+    const Card far = {.more = "'nodes':[{'mesh':0},{'mesh':0,'translation':[900,0,0],"
+                              "'scale':[3,3,3]}]"};
+    f->options.maskedResolution = 64;
+    f->options.keepMeshes = true;
+    CHECK_OK(f->context, LoadCard(f, &card));
+    const double area = GetArea(&f->model.mesh);
+    assert_true(area > 0.4);
+    CHECK_OK(f->context, LoadCard(f, &far));
+    CHECK_NEAR(GetArea(&f->model.mesh), 10.0 * area, 1e-9);
+    assert_int_equal(f->model.meshCount, 1);
+    CHECK_NEAR(GetArea(&f->model.meshes[0]), area, 1e-9);
+    f->options.keepMeshes = false;
+    assert_true(LoadCard(f, &far) != PVT_OK || GetArea(&f->model.mesh) < 5.0 * area);
+}
+
 // `count` nodes with the card, as the end of a document.
 static void PrintNodes(char* text, size_t room, int count)
 {
@@ -583,6 +604,7 @@ int main(void)
         TEST(without_its_image_a_mask_is_left_out_with_the_reason),
         TEST(an_image_beyond_the_memory_limit_is_refused_as_such),
         TEST(coarser_looks_only_ever_lose_surface),
+        TEST(a_mesh_that_is_kept_is_looked_at_by_itself),
         TEST(millions_of_pieces_are_looked_at_less_closely_with_a_warning),
         TEST(failures_and_cancels_leave_nothing_behind),
     };
