@@ -29,7 +29,9 @@ pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* opti
     const int* size = volume->grid->frame.size;
     const int longest = size[0] > size[1] ? (size[0] > size[2] ? size[0] : size[2])
                                           : (size[1] > size[2] ? size[1] : size[2]);
-    arrangement->cellsPerVoxel = longest <= 160 ? 4 : longest <= 640 ? 2 : 1;
+    arrangement->cellsPerVoxel = volume->cells != NULL || longest <= 160 ? 4
+                                 : longest <= 640                        ? 2
+                                                                         : 1;
     pvtStatus status =
         pvtCreateScorer(context, options, &volume->grid->frame, &arrangement->scorer);
     if (status == PVT_OK) {
@@ -50,7 +52,7 @@ pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* opti
 }
 
 pvtStatus pvtSliceAllowed(pvtContext* context, const pvtArrangement* arrangement,
-                          const pvtPlane* plane, pvtBitmap* cells)
+                          const pvtPlane* plane, const pvtSliceWindow* window, pvtBitmap* cells)
 {
     const int* size = arrangement->volume->grid->frame.size;
     const int scale = arrangement->cellsPerVoxel;
@@ -63,7 +65,11 @@ pvtStatus pvtSliceAllowed(pvtContext* context, const pvtArrangement* arrangement
             return status;
         }
     }
-    pvtSliceGrid(arrangement->volume, plane, PVT_SLICE_COVERED, scale, cells);
+    if (arrangement->volume->cells != NULL) {
+        pvtSliceCells(arrangement->volume, plane, scale, window, cells);
+    } else {
+        pvtSliceGrid(arrangement->volume, plane, PVT_SLICE_COVERED, scale, cells);
+    }
     return PVT_OK;
 }
 
@@ -160,7 +166,7 @@ static pvtStatus PlacePanel(pvtContext* context, pvtArrangement* arrangement, in
         placed->panel.count > 0 && IsSamePlane(&placed->panel.plane, &panel->plane);
     if (panel->count > 0 && !samePlane) {
         const pvtStatus status =
-            pvtSliceAllowed(context, arrangement, &panel->plane, &placed->cells);
+            pvtSliceAllowed(context, arrangement, &panel->plane, NULL, &placed->cells);
         if (status != PVT_OK) {
             return status;
         }

@@ -48,9 +48,10 @@ pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* opti
                                pvtArrangement* arrangement);
 void pvtArrangement_Free(pvtContext* context, pvtArrangement* arrangement);
 
-/// The bitmap of a plane's allowed cells, made anew when its size differs.
+/// The bitmap of a plane's allowed cells, made anew when its size differs. Cells outside of the
+/// window (null: there is none) may be clear.
 pvtStatus pvtSliceAllowed(pvtContext* context, const pvtArrangement* arrangement,
-                          const pvtPlane* plane, pvtBitmap* cells);
+                          const pvtPlane* plane, const pvtSliceWindow* window, pvtBitmap* cells);
 
 /// Sets change->value. Safe on any thread as long as nothing is applied meanwhile.
 void pvtEvaluateChange(const pvtArrangement* arrangement, pvtChange* change);

@@ -85,7 +85,11 @@ static pvtStatus MakeSlices(CandidateTask* task, size_t slot, const pvtPlane* pl
         if (CreateSliceBitmap(context, frame, plane, cells, &task->bitmaps[slot]) != PVT_OK) {
             return pvtContext_GetStatus(context);
         }
-        pvtSliceGrid(task->volume, plane, options->rule, cells, &task->bitmaps[slot]);
+        if (options->rule == PVT_SLICE_COVERED && task->volume->cells != NULL && cells == 1) {
+            pvtSliceCells(task->volume, plane, cells, NULL, &task->bitmaps[slot]);
+        } else {
+            pvtSliceGrid(task->volume, plane, options->rule, cells, &task->bitmaps[slot]);
+        }
     }
     if (options->simplification > 0.0) {
         if (CreateSliceBitmap(context, frame, plane, cells, &task->guards[slot]) != PVT_OK) {

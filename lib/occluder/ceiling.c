@@ -45,18 +45,30 @@ static uint64_t GetBorderWord(const pvtBitGrid* grid, size_t word, int y, int z)
     return here & ~(left & right & below & above & front & back);
 }
 
-// The number of points; they are stored when `points` is not null.
-static size_t ListBorder(const pvtBitGrid* grid, int splits, pvtVec3* points)
+// Counts, and stores when there is room.
+typedef struct PointList {
+    pvtVec3* points;
+    size_t count;
+} PointList;
+
+static void AddPoint(PointList* list, pvtVec3 point)
 {
-    size_t count = 0;
+    if (list->points != NULL) {
+        list->points[list->count] = point;
+    }
+    ++list->count;
+}
+
+static void ListBorder(const pvtBitGrid* grid, int splits, PointList* list)
+{
     const double h = grid->frame.voxelSize;
     const int each = splits * splits * splits;
     for (int z = 0; z < grid->frame.size[2]; ++z) {
         for (int y = 0; y < grid->frame.size[1]; ++y) {
             for (size_t word = 0; word < grid->wordsPerRow; ++word) {
                 uint64_t border = GetBorderWord(grid, word, y, z);
-                if (points == NULL) {
-                    count += (size_t)(pvtCountBits(border) * each);
+                if (list->points == NULL) {
+                    list->count += (size_t)(pvtCountBits(border) * each);
                     continue;
                 }
                 for (; border != 0; border &= border - 1) {
@@ -67,15 +79,67 @@ static size_t ListBorder(const pvtBitGrid* grid, int splits, pvtVec3* points)
                         const double dx = (part % splits + 0.5) / splits;
                         const double dy = (row % splits + 0.5) / splits;
                         const double dz = (layer + 0.5) / splits;
-                        points[count++] =
-                            pvtAdd(grid->frame.origin,
-                                   (pvtVec3){(x + dx) * h, (y + dy) * h, (z + dz) * h});
+                        AddPoint(list, pvtAdd(grid->frame.origin,
+                                              (pvtVec3){(x + dx) * h, (y + dy) * h, (z + dz) * h}));
                     }
                 }
             }
         }
     }
-    return count;
+}
+
+// The cells of one of the groups that a voxel is cut into, `side` cells long.
+static uint64_t GetGroup(int group, int side)
+{
+    static const uint64_t corners[] = {[1] = 1, [2] = UINT64_C(0x330033), [4] = ~UINT64_C(0)};
+    const int across = PVT_CELLS / side;
+    const int x = group % across, y = group / across % across, z = group / (across * across);
+    return corners[side] << (side * (x + PVT_CELLS * (y + PVT_CELLS * z)));
+}
+
+static pvtVec3 GetMiddle(uint64_t cells)
+{
+    pvtVec3 sum = {0};
+    for (uint64_t bits = cells; bits != 0; bits &= bits - 1) {
+        const int cell = __builtin_ctzll(bits);
+        sum = pvtAdd(sum, (pvtVec3){cell % 4 + 0.5, cell / 4 % 4 + 0.5, cell / 16 + 0.5});
+    }
+    return pvtScale(sum, 1.0 / pvtCountBits(cells));
+}
+
+// As many points along a voxel's side as it needs: one in the middle of each group of cells that
+// has any, or eight in each cell.
+static void AddCells(const pvtGridFrame* frame, const int voxel[3], uint64_t cells, int splits,
+                     PointList* list)
+{
+    const int side = splits == 1 ? 4 : splits == 2 ? 2 : 1;
+    const int parts = splits > PVT_CELLS ? 8 : 1;
+    const double scale = frame->voxelSize / PVT_CELLS;
+    const pvtVec3 corner = {PVT_CELLS * voxel[0], PVT_CELLS * voxel[1], PVT_CELLS * voxel[2]};
+    for (int group = 0; group < 64 / (side * side * side); ++group) {
+        const uint64_t members = cells & GetGroup(group, side);
+        for (int part = 0; part < parts && members != 0; ++part) {
+            const pvtVec3 away = {parts == 1 ? 0.0 : 0.5 * (part & 1) - 0.25,
+                                  parts == 1 ? 0.0 : 0.5 * (part >> 1 & 1) - 0.25,
+                                  parts == 1 ? 0.0 : 0.5 * (part >> 2) - 0.25};
+            const pvtVec3 at = pvtAdd(corner, pvtAdd(GetMiddle(members), away));
+            AddPoint(list, pvtAdd(frame->origin, pvtScale(at, scale)));
+        }
+    }
+}
+
+static void ListCells(const pvtCellGrid* grid, int splits, PointList* list)
+{
+    const pvtBitGrid* voxels = &grid->voxels;
+    for (size_t word = 0, index = 0; word < voxels->wordCount; ++word) {
+        const int row = (int)(word / voxels->wordsPerRow);
+        const int first = (int)(word % voxels->wordsPerRow) * 64;
+        for (uint64_t bits = voxels->words[word]; bits != 0; bits &= bits - 1, ++index) {
+            const int voxel[3] = {first + __builtin_ctzll(bits), row % voxels->frame.size[1],
+                                  row / voxels->frame.size[1]};
+            AddCells(&voxels->frame, voxel, grid->cells[index], splits, list);
+        }
+    }
 }
 
 static void MeasureViews(size_t begin, size_t end, int worker, void* taskData)
@@ -110,46 +174,76 @@ static int GetSplits(const pvtViewSet* views, const pvtBox3* bounds, int size, d
     return (int)fmin(fmax(ceil(1.5 * voxelSize / pixel), 1.0), MANY_SPLITS + 1.0);
 }
 
-// Voxels of many pixels are few: their faces are drawn.
-static pvtStatus MeasureFaces(pvtContext* context, const pvtViewSet* views, const pvtBox3* bounds,
-                              int size, const pvtBitGrid* grid, double* measure)
+// Voxels of many pixels are few: their faces are drawn, and those of partly set ones as wholes.
+static pvtStatus MeasureFaces(pvtContext* context, const CeilingTask* task, const pvtBitGrid* grid,
+                              const pvtCellGrid* cells, double* measure)
 {
+    pvtBitGrid some = *grid;
+    some.words = pvtAllocate(context, some.wordCount, sizeof *some.words);
+    if (some.words == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    memcpy(some.words, grid->words, some.wordCount * sizeof *some.words);
+    for (size_t i = 0; cells != NULL && i < some.wordCount; ++i) {
+        some.words[i] |= cells->voxels.words[i];
+    }
     pvtMesh faces;
-    pvtStatus status = pvtBuildVoxelMesh(context, grid, &faces);
+    pvtStatus status = pvtBuildVoxelMesh(context, &some, &faces);
+    pvtRelease(context, some.words);
     if (status == PVT_OK) {
-        status = pvtMeasureOcclusion(context, views, bounds, size, &faces, measure);
+        status =
+            pvtMeasureOcclusion(context, task->views, task->bounds, task->size, &faces, measure);
         pvtMesh_Free(context, &faces);
     }
     return status;
 }
 
-pvtStatus pvtMeasureGrid(pvtContext* context, const pvtViewSet* views, const pvtBox3* bounds,
-                         int size, const pvtBitGrid* grid, double* measure)
+static void ListPoints(const pvtBitGrid* grid, const pvtCellGrid* cells, int splits,
+                       PointList* list)
+{
+    ListBorder(grid, splits, list);
+    if (cells != NULL) {
+        ListCells(cells, splits, list);
+    }
+}
+
+pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* options,
+                         const pvtBitGrid* grid, const pvtCellGrid* cells, double* measure)
 {
     *measure = 0.0;
-    const int splits = GetSplits(views, bounds, size, grid->frame.voxelSize);
+    CeilingTask task = {.context = context,
+                        .views = options->views,
+                        .bounds = options->bounds,
+                        .size = options->size};
+    cells = cells != NULL && cells->count > 0 ? cells : NULL;
+    const int splits =
+        GetSplits(options->views, options->bounds, options->size, grid->frame.voxelSize);
     if (splits > MANY_SPLITS) {
-        return MeasureFaces(context, views, bounds, size, grid, measure);
+        return MeasureFaces(context, &task, grid, cells, measure);
     }
-    const size_t count = ListBorder(grid, splits, NULL);
-    pvtVec3* points = pvtAllocate(context, count, sizeof *points);
-    uint32_t* table = pvtAllocate(context, pvtGetDistanceTableCount(size), sizeof *table);
-    double* results = pvtAllocate(context, views->count, sizeof *results);
+    PointList list = {0};
+    ListPoints(grid, cells, splits, &list);
+    list.points = pvtAllocate(context, list.count, sizeof *list.points);
+    uint32_t* table = pvtAllocate(context, pvtGetDistanceTableCount(task.size), sizeof *table);
+    task.results = pvtAllocate(context, task.views->count, sizeof *task.results);
     pvtStatus status = PVT_OK;
-    if (points == NULL || table == NULL || results == NULL) {
+    if (list.points == NULL || table == NULL || task.results == NULL) {
         status = pvtContext_GetStatus(context);
     } else {
-        ListBorder(grid, splits, points);
-        pvtFillDistanceTable(size, 1, table);
-        CeilingTask task = {context, views, bounds, size, points, count, table, results};
-        pvtParallelFor(context, MeasureViews, views->count, 1, &task);
+        list.count = 0;
+        ListPoints(grid, cells, splits, &list);
+        pvtFillDistanceTable(task.size, 1, table);
+        task.points = list.points;
+        task.pointCount = list.count;
+        task.table = table;
+        pvtParallelFor(context, MeasureViews, task.views->count, 1, &task);
         status = pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
-        for (size_t v = 0; v < views->count && status == PVT_OK; ++v) {
-            *measure += results[v];
+        for (size_t v = 0; v < task.views->count && status == PVT_OK; ++v) {
+            *measure += task.results[v];
         }
     }
-    pvtRelease(context, results);
+    pvtRelease(context, task.results);
     pvtRelease(context, table);
-    pvtRelease(context, points);
+    pvtRelease(context, list.points);
     return status;
 }

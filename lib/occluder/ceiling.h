@@ -6,8 +6,15 @@
 #include <paravent/occlusion.h>
 #include <paravent/voxel.h>
 
-/// As pvtMeasureOcclusion, for the set voxels instead of a mesh.
-pvtStatus pvtMeasureGrid(pvtContext* context, const pvtViewSet* views, const pvtBox3* bounds,
-                         int size, const pvtBitGrid* grid, double* measure);
+typedef struct pvtMeasureGridOptions {
+    const pvtViewSet* views;
+    const pvtBox3* bounds; ///< [wu] what the masks span
+    int size;              ///< [px] of the masks
+} pvtMeasureGridOptions;
+
+/// As pvtMeasureOcclusion, for the set voxels, and the cells of finer ones (may be null), instead
+/// of a mesh.
+pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* options,
+                         const pvtBitGrid* grid, const pvtCellGrid* cells, double* measure);
 
 #endif

@@ -6,6 +6,7 @@
 #include "base/context.h"
 #include "base/vector.h"
 
+#include <limits.h>
 #include <math.h>
 #include <paravent/occluder.h>
 
@@ -15,13 +16,14 @@ static const double SLACK = 1.0 / 1024.0;
 typedef struct CheckTask {
     pvtContext* context;
     const pvtBitGrid* allowed;
+    const pvtCellGrid* cells; // may be null
     const pvtMesh* mesh;
     uint64_t* outside; // one a triangle
 } CheckTask;
 
-// A convex polygon in grid coordinates: a triangle cut by up to four planes.
+// A convex polygon in grid coordinates: a triangle cut by up to ten planes.
 typedef struct Piece {
-    pvtVec3 points[8];
+    pvtVec3 points[16];
     int count;
 } Piece;
 
@@ -70,6 +72,84 @@ static void GetRange(const Piece* piece, int axis, int size, int range[2])
     range[1] = (int)fmin(ceil(high - SLACK) - 1.0, size);
 }
 
+// Whether the box around a piece of a voxel holds set cells only: most do, and need no clipping.
+static bool IsBoxSet(const Piece* piece, uint64_t cells, const int voxel[3])
+{
+    int ranges[3][2];
+    for (int axis = 0; axis < 3; ++axis) {
+        GetRange(piece, axis, INT_MAX, ranges[axis]);
+        ranges[axis][0] -= PVT_CELLS * voxel[axis];
+        ranges[axis][1] -= PVT_CELLS * voxel[axis];
+    }
+    for (int z = ranges[2][0]; z <= ranges[2][1]; ++z) {
+        for (int y = ranges[1][0]; y <= ranges[1][1]; ++y) {
+            for (int x = ranges[0][0]; x <= ranges[0][1]; ++x) {
+                if ((cells >> (x + PVT_CELLS * (y + PVT_CELLS * z)) & 1) == 0) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+// Whether a piece of a voxel reaches into one of its clear cells. Coordinates count in cells.
+static bool ReachesClearCell(const Piece* piece, uint64_t cells, const int voxel[3])
+{
+    if (IsBoxSet(piece, cells, voxel)) {
+        return false;
+    }
+    int zs[2];
+    GetRange(piece, 2, INT_MAX, zs);
+    for (int z = zs[0]; z <= zs[1]; ++z) {
+        const Piece slab = ClipToSlab(piece, 2, z);
+        int ys[2];
+        GetRange(&slab, 1, INT_MAX, ys);
+        for (int y = ys[0]; y <= ys[1]; ++y) {
+            const Piece row = ClipToSlab(&slab, 1, y);
+            int xs[2];
+            GetRange(&row, 0, INT_MAX, xs);
+            for (int x = xs[0]; x <= xs[1]; ++x) {
+                const int cell = (x - PVT_CELLS * voxel[0]) +
+                                 PVT_CELLS * ((y - PVT_CELLS * voxel[1]) +
+                                              PVT_CELLS * (z - PVT_CELLS * voxel[2]));
+                if ((cells >> cell & 1) == 0) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+// The row's piece in a voxel that is not allowed as a whole.
+static bool IsVoxelLeft(const CheckTask* task, const Piece* row, const int voxel[3])
+{
+    const uint64_t cells =
+        task->cells != NULL ? pvtCellGrid_Get(task->cells, voxel[0], voxel[1], voxel[2]) : 0;
+    if (cells == 0) {
+        return true;
+    }
+    Piece piece = ClipToSlab(row, 0, voxel[0]);
+    for (int i = 0; i < piece.count; ++i) {
+        piece.points[i] = pvtScale(piece.points[i], PVT_CELLS);
+    }
+    return ReachesClearCell(&piece, cells, voxel);
+}
+
+static uint64_t CheckRow(const CheckTask* task, const Piece* row, int y, int z)
+{
+    uint64_t outside = 0;
+    int xs[2];
+    GetRange(row, 0, task->allowed->frame.size[0], xs);
+    for (int x = xs[0]; x <= xs[1]; ++x) {
+        if (!pvtBitGrid_Get(task->allowed, x, y, z)) {
+            outside += IsVoxelLeft(task, row, (int[3]){x, y, z}) ? 1 : 0;
+        }
+    }
+    return outside;
+}
+
 static uint64_t CheckTriangle(const CheckTask* task, size_t triangle)
 {
     const pvtGridFrame* frame = &task->allowed->frame;
@@ -87,11 +167,7 @@ static uint64_t CheckTriangle(const CheckTask* task, size_t triangle)
         GetRange(&slab, 1, frame->size[1], ys);
         for (int y = ys[0]; y <= ys[1]; ++y) {
             const Piece row = ClipToSlab(&slab, 1, y);
-            int xs[2];
-            GetRange(&row, 0, frame->size[0], xs);
-            for (int x = xs[0]; x <= xs[1]; ++x) {
-                outside += pvtBitGrid_Get(task->allowed, x, y, z) ? 0 : 1;
-            }
+            outside += CheckRow(task, &row, y, z);
         }
     }
     return outside;
@@ -106,15 +182,19 @@ static void CheckTriangles(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
-pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed, const pvtMesh* occluder,
-                           uint64_t* outside)
+pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed, const pvtCellGrid* cells,
+                           const pvtMesh* occluder, uint64_t* outside)
 {
     *outside = 0;
     uint64_t* counts = pvtAllocate(context, occluder->triangleCount, sizeof *counts);
     if (counts == NULL) {
         return pvtContext_GetStatus(context);
     }
-    CheckTask task = {context, allowed, occluder, counts};
+    CheckTask task = {.context = context,
+                      .allowed = allowed,
+                      .cells = cells != NULL && cells->count > 0 ? cells : NULL,
+                      .mesh = occluder,
+                      .outside = counts};
     pvtParallelFor(context, CheckTriangles, occluder->triangleCount, 1, &task);
     for (size_t t = 0; t < occluder->triangleCount; ++t) {
         *outside += counts[t];

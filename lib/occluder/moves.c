@@ -2,6 +2,7 @@
 #include "moves.h"
 
 #include "base/vector.h"
+#include "section/cover.h"
 
 #include <math.h>
 #include <string.h>
@@ -80,11 +81,11 @@ static bool FitsPointAt(const Maker* maker, const pvtBitmap* cells, pvtPanel* pa
     const pvtPoint2 after = panel->points[(index + 1) % panel->count];
     // What a move adds lies in these two triangles.
     const pvtPoint2 swept[2][3] = {{before, here, there}, {here, after, there}};
-    const int scale = maker->arrangement->cellsPerVoxel;
+    const int32_t unit = (1 << PVT_POINT_BITS) / maker->arrangement->cellsPerVoxel;
     panel->points[index] = there;
     const bool fits = pvtIsPointSimple(panel->points, count, (size_t)index) &&
-                      pvtIsPolygonWithin(cells, scale, swept[0], 3) &&
-                      pvtIsPolygonWithin(cells, scale, swept[1], 3);
+                      pvtIsTriangleCovered(cells, unit, swept[0]) &&
+                      pvtIsTriangleCovered(cells, unit, swept[1]);
     panel->points[index] = here;
     return fits;
 }
@@ -207,7 +208,8 @@ static bool RemovePoint(Maker* maker, pvtPanel* panel, const pvtBitmap* cells)
             (size_t)(last - index) * sizeof *panel->points);
     panel->count = last;
     return pvtIsPolygonSimple(panel->points, (size_t)last) &&
-           pvtIsPolygonWithin(cells, maker->arrangement->cellsPerVoxel, cut, 3);
+           pvtIsTriangleCovered(cells, (1 << PVT_POINT_BITS) / maker->arrangement->cellsPerVoxel,
+                                cut);
 }
 
 // A triangle goes from one panel to another, or is spent when the budget has one left.
@@ -289,6 +291,27 @@ static bool MakePlaneThrough(const pvtPlane* from, const double point[2], const 
     return true;
 }
 
+// Where a panel may lie after Refit.
+static pvtSliceWindow FindWindow(const pvtPanel* panel)
+{
+    int32_t low[2] = {INT32_MAX, INT32_MAX};
+    int32_t high[2] = {0, 0};
+    for (int i = 0; i < panel->count; ++i) {
+        const int32_t at[2] = {panel->points[i].x, panel->points[i].y};
+        for (int axis = 0; axis < 2; ++axis) {
+            low[axis] = at[axis] < low[axis] ? at[axis] : low[axis];
+            high[axis] = at[axis] > high[axis] ? at[axis] : high[axis];
+        }
+    }
+    pvtSliceWindow window;
+    for (int axis = 0; axis < 2; ++axis) {
+        const int32_t margin = (high[axis] - low[axis]) / 16 + (2 << PVT_POINT_BITS);
+        window.lower[axis] = (low[axis] - margin) >> PVT_POINT_BITS;
+        window.upper[axis] = (high[axis] + margin) >> PVT_POINT_BITS;
+    }
+    return window;
+}
+
 static bool TiltPanel(Maker* maker)
 {
     const int slot = PickSlot(maker, -1);
@@ -315,8 +338,9 @@ static bool TiltPanel(Maker* maker)
     if (!MakePlaneThrough(&before, pivot, change, &panel->plane)) {
         return false;
     }
-    maker->status =
-        pvtSliceAllowed(maker->context, maker->arrangement, &panel->plane, &maker->scratch->cells);
+    const pvtSliceWindow window = FindWindow(panel);
+    maker->status = pvtSliceAllowed(maker->context, maker->arrangement, &panel->plane, &window,
+                                    &maker->scratch->cells);
     return maker->status == PVT_OK && Refit(maker, panel, &maker->scratch->cells);
 }
 

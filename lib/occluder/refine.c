@@ -26,6 +26,7 @@ typedef struct Refinement {
     pvtArrangement arrangement;
     pvtMoveOptions moves;
     Trial* trials; // BATCH
+    double reach;  // [vx] of the longest steps
     uint64_t next; // number of the batch's first trial: its dice
 } Refinement;
 
@@ -81,14 +82,19 @@ static pvtStatus RunBatch(pvtContext* context, Refinement* refinement)
     return PVT_OK;
 }
 
-static pvtStatus Climb(pvtContext* context, Refinement* refinement)
+// Rounds end after so many trials. A longer search is the shorter one gone on with, so that it is
+// never worse.
+static const double roundEnds[] = {1500.0, 20000.0, HUGE_VAL};
+
+// One round: large steps and new structure first, small steps at the end. Sets *stop when time is
+// up.
+static pvtStatus Climb(pvtContext* context, Refinement* refinement, double end, bool* stop)
 {
     const double total = refinement->options->trials;
-    const double reach = refinement->moves.reach;
-    while ((double)refinement->next < total) {
-        // Large steps and new structure first, small steps at the end.
-        const double rest = 1.0 - (double)refinement->next / total;
-        refinement->moves.reach = reach * (0.02 + 0.98 * rest);
+    const double begin = (double)refinement->next;
+    while ((double)refinement->next < end) {
+        const double rest = 1.0 - ((double)refinement->next - begin) / (end - begin);
+        refinement->moves.reach = refinement->reach * (0.02 + 0.98 * rest);
         refinement->moves.structure = 0.1 + 0.4 * rest;
         const pvtStatus status = RunBatch(context, refinement);
         if (status != PVT_OK) {
@@ -97,16 +103,28 @@ static pvtStatus Climb(pvtContext* context, Refinement* refinement)
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
+        const double done = (double)refinement->next / total;
         if (refinement->options->deadline > 0.0 &&
             pvtGetSeconds() > refinement->options->deadline) {
             pvtLog(context, PVT_LOG_WARNING,
-                   "the deadline ended the refinement after %.0f %% of its trials",
-                   100.0 * (1.0 - rest));
-            break;
+                   "the deadline ended the refinement after %.0f %% of its trials", 100.0 * done);
+            *stop = true;
+            return PVT_OK;
         }
-        pvtReportProgress(context, 1.0 - rest);
+        pvtReportProgress(context, done);
     }
     return PVT_OK;
+}
+
+static pvtStatus RunRounds(pvtContext* context, Refinement* refinement)
+{
+    const double total = refinement->options->trials;
+    pvtStatus status = PVT_OK;
+    bool stop = false;
+    for (int r = 0; (double)refinement->next < total && status == PVT_OK && !stop; ++r) {
+        status = Climb(context, refinement, fmin(roundEnds[r], total), &stop);
+    }
+    return status;
 }
 
 static pvtStatus StorePanels(pvtContext* context, const pvtArrangement* arrangement,
@@ -171,14 +189,13 @@ pvtStatus pvtRefineOccluder(pvtContext* context, const pvtRefineOptions* options
     }
     if (status == PVT_OK) {
         const int* size = volume->grid->frame.size;
-        refinement.moves = (pvtMoveOptions){.budget = options->budget,
-                                            .reach = 0.15 * fmax(size[0], fmax(size[1], size[2])),
-                                            .candidates = candidates,
-                                            .candidateSums = sums};
+        refinement.reach = 0.15 * fmax(size[0], fmax(size[1], size[2]));
+        refinement.moves = (pvtMoveOptions){
+            .budget = options->budget, .candidates = candidates, .candidateSums = sums};
         status = PlaceOccluder(context, &refinement.arrangement, occluder);
     }
     if (status == PVT_OK) {
-        status = Climb(context, &refinement);
+        status = RunRounds(context, &refinement);
     }
     if (status == PVT_OK) {
         status = StorePanels(context, &refinement.arrangement, occluder);

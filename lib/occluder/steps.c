@@ -40,6 +40,7 @@ void pvtBuild_Free(pvtContext* context, pvtBuild* build)
     pvtBitGrid_Free(context, &build->surface);
     pvtSolid_Free(context, &build->solid);
     pvtBitGrid_Free(context, &build->allowed);
+    pvtCellGrid_Free(context, &build->cells);
     pvtSliceVolume_Free(context, &build->volume);
     pvtSliceVolume_Free(context, &build->solidVolume);
     pvtSectionSet_Free(context, &build->sections);
@@ -164,6 +165,19 @@ static bool FindBounds(const pvtBitGrid* grid, pvtBox3* bounds)
     return isFound;
 }
 
+static void WidenBounds(const pvtBitGrid* grid, pvtBox3* bounds)
+{
+    pvtBox3 more;
+    if (grid->words != NULL && FindBounds(grid, &more)) {
+        for (int axis = 0; axis < 3; ++axis) {
+            pvtSetAxis(&bounds->lower, axis,
+                       fmin(pvtGetAxis(bounds->lower, axis), pvtGetAxis(more.lower, axis)));
+            pvtSetAxis(&bounds->upper, axis,
+                       fmax(pvtGetAxis(bounds->upper, axis), pvtGetAxis(more.upper, axis)));
+        }
+    }
+}
+
 static pvtStatus FailNothingInside(pvtContext* context, const pvtBuild* build)
 {
     const pvtRemedy* remedy = &build->solid.remedy;
@@ -221,11 +235,19 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
         status =
             pvtMakeAllowedGrid(context, &build->solid, build->stats.tolerance, &build->allowed);
     }
+    if (status == PVT_OK && build->stats.tolerance == 0.0) {
+        status = pvtRefineAllowedGrid(context, build->mesh, &build->solid, &build->allowed,
+                                      &build->cells);
+    }
     if (status == PVT_OK && !FindBounds(&build->allowed, &build->bounds)) {
         status = FailNothingInside(context, build);
     }
     if (status == PVT_OK) {
+        WidenBounds(&build->cells.voxels, &build->bounds);
         status = pvtCreateSliceVolume(context, &build->allowed, &build->volume);
+    }
+    if (status == PVT_OK && build->cells.count > 0) {
+        status = pvtAddSliceCells(context, &build->cells, &build->volume);
     }
     return status;
 }
@@ -377,8 +399,8 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
     if (build->stats.tolerance > 0.0 || !FindBounds(&build->solid.inside, &bounds)) {
         return PVT_OK;
     }
-    const pvtStatus status = pvtMeasureGrid(context, &build->views, &bounds, MEASURE_SIZE,
-                                            &build->solid.inside, &hidden);
+    const pvtMeasureGridOptions options = {&build->views, &bounds, MEASURE_SIZE};
+    const pvtStatus status = pvtMeasureGrid(context, &options, &build->solid.inside, NULL, &hidden);
     if (status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden) {
         pvtLog(context, PVT_LOG_WARNING,
                "only %.1f %% of what the mesh hides lies strictly inside it at %d voxels, and an "
@@ -392,16 +414,17 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
 {
     pvtBuildStats* stats = &build->stats;
-    pvtStatus status =
-        pvtCheckOccluder(context, &build->allowed, &build->occluder.mesh, &stats->outside);
+    pvtStatus status = pvtCheckOccluder(context, &build->allowed, &build->cells,
+                                        &build->occluder.mesh, &stats->outside);
     if (status == PVT_OK) {
         status = pvtMeasureOcclusion(context, &build->views, &build->bounds, MEASURE_SIZE,
                                      &build->occluder.mesh, &stats->measure);
         build->occluder.measure = stats->measure;
     }
     if (status == PVT_OK) {
-        status = pvtMeasureGrid(context, &build->views, &build->bounds, MEASURE_SIZE,
-                                &build->allowed, &stats->measureOfSolid);
+        const pvtMeasureGridOptions options = {&build->views, &build->bounds, MEASURE_SIZE};
+        status = pvtMeasureGrid(context, &options, &build->allowed, &build->cells,
+                                &stats->measureOfSolid);
     }
     if (status == PVT_OK) {
         status = CompareWithMesh(context, build);

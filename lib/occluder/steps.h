@@ -13,7 +13,8 @@ typedef struct pvtBuild {
     pvtBuildStats stats;
     pvtBitGrid surface;
     pvtSolid solid;
-    pvtBitGrid allowed;         ///< where polygons may lie
+    pvtBitGrid allowed;
+    pvtCellGrid cells;          // allowed parts of other voxels         ///< where polygons may lie
     pvtSliceVolume volume;      ///< of `allowed`
     pvtSliceVolume solidVolume; ///< of the solid: what the paper's way slices
     pvtBox3 bounds;             ///< [wu] of the allowed voxels

@@ -271,6 +271,184 @@ void pvtSliceGrid(const pvtSliceVolume* volume, const pvtPlane* plane, pvtSliceR
     }
 }
 
+// A plane over a volume with cells. Heights count in units of 2^-23 voxel, as for slices of four
+// cells a voxel.
+typedef struct CellSlicing {
+    const pvtSliceVolume* volume;
+    pvtAxis axis;
+    int64_t first; // height below which the patch over cell (0, 0) does not reach
+    int64_t span;  // to its highest
+    int64_t stepU, stepV;
+    Slicing whole, partly; // of the voxels, one cell each
+} CellSlicing;
+
+enum { HEIGHT_BITS = PVT_PLANE_BITS + 3, CELL_HEIGHT_BITS = HEIGHT_BITS - 2, PATCHES = 16 };
+
+// All cells of a voxel of the column (u, v), at position n along the axis.
+static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t n)
+{
+    const pvtSliceVolume* volume = slicing->volume;
+    const pvtSliceColumns* whole = &volume->axes[slicing->axis];
+    const int* size = volume->grid->frame.size;
+    if (n < 0 || n >= size[slicing->axis]) {
+        return 0;
+    }
+    const size_t column = (size_t)v * whole->wordsPerRow + (size_t)u / 64;
+    if ((whole->words[column * whole->stride + (size_t)n] >> (u % 64) & 1) != 0) {
+        return ~UINT64_C(0);
+    }
+    const int at = (int)n;
+    const int x = slicing->axis == PVT_AXIS_X ? at : u;
+    const int y = slicing->axis == PVT_AXIS_X ? u : slicing->axis == PVT_AXIS_Y ? at : v;
+    const int z = slicing->axis == PVT_AXIS_Z ? at : v;
+    const pvtBitGrid* voxels = &volume->cells->voxels;
+    const size_t row = (size_t)z * (size_t)size[1] + (size_t)y;
+    const size_t word = row * voxels->wordsPerRow + (size_t)x / 64;
+    const uint64_t bit = UINT64_C(1) << (x % 64);
+    if ((voxels->words[word] & bit) == 0) {
+        return 0;
+    }
+    const int before = pvtCountBits(voxels->words[word] & (bit - 1));
+    return volume->cellWords[slicing->axis][volume->cells->ranks[word] + (size_t)before];
+}
+
+// Which of the 16 patches over a voxel's column (u, v) touch set cells only: bit i + 4 j.
+static uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
+{
+    const int64_t corner = slicing->first + PVT_CELLS * (slicing->stepU * u + slicing->stepV * v);
+    int32_t low[PATCHES], high[PATCHES];
+    int32_t least = INT32_MAX, most = INT32_MIN;
+    for (int i = 0; i < PATCHES; ++i) {
+        const int64_t at = corner + slicing->stepU * (i % 4) + slicing->stepV * (i / 4);
+        low[i] = (int32_t)(at >> CELL_HEIGHT_BITS);
+        high[i] = (int32_t)((at + slicing->span) >> CELL_HEIGHT_BITS);
+        least = low[i] < least ? low[i] : least;
+        most = high[i] > most ? high[i] : most;
+    }
+    uint32_t blocked = 0;
+    uint64_t cells = 0;
+    for (int32_t level = least; level <= most && blocked != 0xFFFF; ++level) {
+        if (level == least || (level & (PVT_CELLS - 1)) == 0) {
+            cells = GetColumnCells(slicing, u, v, level >> 2);
+        }
+        const uint32_t clear = (uint32_t)(~cells >> (PATCHES * (level & (PVT_CELLS - 1)))) & 0xFFFF;
+        uint32_t touching = 0;
+        for (int i = 0; i < PATCHES && clear != 0; ++i) {
+            touching |= (uint32_t)(low[i] <= level && level <= high[i]) << i;
+        }
+        blocked |= clear & touching;
+    }
+    return ~blocked & 0xFFFF;
+}
+
+static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plane,
+                              SlopeTable* table)
+{
+    const int64_t u = plane->slopeU < 0 ? -plane->slopeU : plane->slopeU;
+    const int64_t v = plane->slopeV < 0 ? -plane->slopeV : plane->slopeV;
+    const int64_t middle = plane->offset * 2 * PVT_CELLS + plane->slopeU + plane->slopeV;
+    CellSlicing slicing = {.volume = volume,
+                           .axis = plane->axis,
+                           .first = middle - u - v - 1,
+                           .span = 2 * (u + v) + 1,
+                           .stepU = 2 * (int64_t)plane->slopeU,
+                           .stepV = 2 * (int64_t)plane->slopeV,
+                           .whole = {.columns = &volume->axes[plane->axis],
+                                     .table = table,
+                                     .bits = PVT_PLANE_BITS + 1,
+                                     .stepU = 2 * (int64_t)plane->slopeU,
+                                     .stepV = 2 * (int64_t)plane->slopeV,
+                                     .cellsPerVoxel = 1}};
+    PlaceSamples(plane, PVT_SLICE_COVERED, &slicing.whole);
+    slicing.partly = slicing.whole;
+    slicing.partly.columns = &volume->partly[plane->axis];
+    return slicing;
+}
+
+// The columns of word w in row v of voxels that whole voxels cover, and those that partly set ones
+// may cover instead.
+static void FindColumns(const CellSlicing* slicing, int v, size_t w, uint64_t* covered,
+                        uint64_t* others)
+{
+    const Slicing* whole = &slicing->whole;
+    const Slicing* partly = &slicing->partly;
+    const int64_t rise = whole->stepV * v + whole->stepU * COLUMNS * (int64_t)w;
+    const size_t column = (size_t)v * whole->columns->wordsPerRow + w;
+    *covered = SlicePhase(whole, column, rise);
+    *others = 0;
+    for (int i = 0; i < partly->sampleCount; ++i) {
+        *others |= SliceColumn(partly, column, partly->samples[i] + rise);
+    }
+    *others &= ~*covered;
+}
+
+static void SliceCellWord(const CellSlicing* slicing, int v, size_t w, pvtBitmap* slice)
+{
+    const size_t perRow = slice->wordsPerRow;
+    uint64_t* rows = slice->words + (size_t)v * PVT_CELLS * perRow;
+    uint64_t covered, others;
+    FindColumns(slicing, v, w, &covered, &others);
+    for (size_t part = 0; part < PVT_CELLS && w * PVT_CELLS + part < perRow; ++part) {
+        const uint64_t word = SpreadBits(covered >> (16 * part) & 0xFFFF, PVT_CELLS) * 0xF;
+        for (size_t row = 0; row < PVT_CELLS; ++row) {
+            rows[row * perRow + w * PVT_CELLS + part] = word;
+        }
+    }
+    for (; others != 0; others &= others - 1) {
+        const int u = (int)(w * COLUMNS) + __builtin_ctzll(others);
+        const uint64_t patches = JudgePatches(slicing, u, v);
+        for (size_t row = 0; row < PVT_CELLS; ++row) {
+            rows[row * perRow + (size_t)u / 16] |= (patches >> (4 * row) & 0xF) << (4 * (u % 16));
+        }
+    }
+}
+
+// At one cell a voxel all patches over it must be covered.
+static void SliceVoxelWord(const CellSlicing* slicing, int v, size_t w, pvtBitmap* slice)
+{
+    uint64_t* word = &slice->words[(size_t)v * slice->wordsPerRow + w];
+    uint64_t others;
+    FindColumns(slicing, v, w, word, &others);
+    for (; others != 0; others &= others - 1) {
+        const int bit = __builtin_ctzll(others);
+        const bool all = JudgePatches(slicing, (int)(w * COLUMNS) + bit, v) == 0xFFFF;
+        *word |= (uint64_t)all << bit;
+    }
+}
+
+static int ClampInto(int value, int most)
+{
+    return value < 0 ? 0 : value > most ? most : value;
+}
+
+void pvtSliceCells(const pvtSliceVolume* volume, const pvtPlane* plane, int cellsPerVoxel,
+                   const pvtSliceWindow* window, pvtBitmap* slice)
+{
+    assert(cellsPerVoxel == 1 || cellsPerVoxel == PVT_CELLS);
+    const int width = volume->grid->frame.size[pvtPlane_GetU(plane)];
+    const int height = volume->grid->frame.size[pvtPlane_GetV(plane)];
+    assert(slice->width == width * cellsPerVoxel && slice->height == height * cellsPerVoxel);
+    SlopeTable table;
+    MakeSlopeTable(plane->slopeU, &table);
+    const CellSlicing slicing = StartCells(volume, plane, &table);
+    const pvtSliceWindow all = {.upper = {width, height}};
+    const pvtSliceWindow* part = window != NULL ? window : &all;
+    const size_t first = (size_t)ClampInto(part->lower[0], width) / COLUMNS;
+    const size_t end = pvtGetWordCount((size_t)ClampInto(part->upper[0], width));
+    if (window != NULL) {
+        memset(slice->words, 0, slice->wordsPerRow * (size_t)slice->height * sizeof(uint64_t));
+    }
+    for (int v = ClampInto(part->lower[1], height); v < ClampInto(part->upper[1], height); ++v) {
+        for (size_t w = first; w < end; ++w) {
+            if (cellsPerVoxel == 1) {
+                SliceVoxelWord(&slicing, v, w, slice);
+            } else {
+                SliceCellWord(&slicing, v, w, slice);
+            }
+        }
+    }
+}
+
 double pvtMeasureSlice(const pvtBitmap* slice, const pvtPlane* plane, int cellsPerVoxel)
 {
     return (double)pvtBitmap_Count(slice) * pvtPlane_GetAreaScale(plane) /

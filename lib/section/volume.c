@@ -89,25 +89,30 @@ static void FindRanges(pvtSliceColumns* columns, int v, int length)
     }
 }
 
+typedef struct FillTask {
+    const pvtBitGrid* grid;
+    pvtSliceColumns* axes; // of three
+} FillTask;
+
 static void FillLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
-    pvtSliceVolume* volume = taskData;
+    const FillTask* task = taskData;
     for (int z = (int)begin; z < (int)end; ++z) {
-        FillAlongX(volume->grid, z, &volume->axes[PVT_AXIS_X]);
-        FillAlongY(volume->grid, z, &volume->axes[PVT_AXIS_Y]);
-        FindRanges(&volume->axes[PVT_AXIS_X], z, volume->grid->frame.size[0]);
-        FindRanges(&volume->axes[PVT_AXIS_Y], z, volume->grid->frame.size[1]);
+        FillAlongX(task->grid, z, &task->axes[PVT_AXIS_X]);
+        FillAlongY(task->grid, z, &task->axes[PVT_AXIS_Y]);
+        FindRanges(&task->axes[PVT_AXIS_X], z, task->grid->frame.size[0]);
+        FindRanges(&task->axes[PVT_AXIS_Y], z, task->grid->frame.size[1]);
     }
 }
 
 static void FillWalls(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
-    pvtSliceVolume* volume = taskData;
+    const FillTask* task = taskData;
     for (int y = (int)begin; y < (int)end; ++y) {
-        FillAlongZ(volume->grid, y, &volume->axes[PVT_AXIS_Z]);
-        FindRanges(&volume->axes[PVT_AXIS_Z], y, volume->grid->frame.size[2]);
+        FillAlongZ(task->grid, y, &task->axes[PVT_AXIS_Z]);
+        FindRanges(&task->axes[PVT_AXIS_Z], y, task->grid->frame.size[2]);
     }
 }
 
@@ -128,26 +133,99 @@ static pvtStatus CreateColumns(pvtContext* context, const pvtBitGrid* grid, int 
     return columns->ranges != NULL ? PVT_OK : pvtContext_GetStatus(context);
 }
 
-pvtStatus pvtCreateSliceVolume(pvtContext* context, const pvtBitGrid* grid, pvtSliceVolume* volume)
+static pvtStatus CreateAxes(pvtContext* context, const pvtBitGrid* grid, pvtSliceColumns axes[3])
 {
-    *volume = (pvtSliceVolume){.grid = grid};
     for (int axis = 0; axis < 3; ++axis) {
-        const pvtStatus status = CreateColumns(context, grid, axis, &volume->axes[axis]);
+        const pvtStatus status = CreateColumns(context, grid, axis, &axes[axis]);
         if (status != PVT_OK) {
-            pvtSliceVolume_Free(context, volume);
             return status;
         }
     }
-    pvtParallelFor(context, FillLayers, (size_t)grid->frame.size[2], 4, volume);
-    pvtParallelFor(context, FillWalls, (size_t)grid->frame.size[1], 4, volume);
+    FillTask task = {grid, axes};
+    pvtParallelFor(context, FillLayers, (size_t)grid->frame.size[2], 4, &task);
+    pvtParallelFor(context, FillWalls, (size_t)grid->frame.size[1], 4, &task);
+    return PVT_OK;
+}
+
+pvtStatus pvtCreateSliceVolume(pvtContext* context, const pvtBitGrid* grid, pvtSliceVolume* volume)
+{
+    *volume = (pvtSliceVolume){.grid = grid};
+    const pvtStatus status = CreateAxes(context, grid, volume->axes);
+    if (status != PVT_OK) {
+        pvtSliceVolume_Free(context, volume);
+    }
+    return status;
+}
+
+// Cells in the order x, y, z are digits of base four. This changes the places of the lower two,
+static uint64_t SwapLowDigits(uint64_t cells)
+{
+    uint64_t swap = (cells ^ cells >> 3) & UINT64_C(0x0A0A0A0A0A0A0A0A);
+    cells ^= swap ^ swap << 3;
+    swap = (cells ^ cells >> 6) & UINT64_C(0x00CC00CC00CC00CC);
+    return cells ^ swap ^ swap << 6;
+}
+
+// and this those of the upper two.
+static uint64_t SwapHighDigits(uint64_t cells)
+{
+    uint64_t swap = (cells ^ cells >> 12) & UINT64_C(0x0000F0F00000F0F0);
+    cells ^= swap ^ swap << 12;
+    swap = (cells ^ cells >> 24) & UINT64_C(0x00000000FF00FF00);
+    return cells ^ swap ^ swap << 24;
+}
+
+static void FreeColumns(pvtContext* context, pvtSliceColumns axes[3])
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        pvtRelease(context, axes[axis].words);
+        pvtRelease(context, axes[axis].ranges);
+        axes[axis] = (pvtSliceColumns){0};
+    }
+}
+
+static void FreeCells(pvtContext* context, pvtSliceVolume* volume)
+{
+    FreeColumns(context, volume->partly);
+    for (int axis = 0; axis < 3; ++axis) {
+        pvtRelease(context, volume->cellWords[axis]);
+        volume->cellWords[axis] = NULL;
+    }
+    volume->cells = NULL;
+}
+
+pvtStatus pvtAddSliceCells(pvtContext* context, const pvtCellGrid* cells, pvtSliceVolume* volume)
+{
+    // Where either is set. Only its words are its own.
+    pvtBitGrid some = *volume->grid;
+    some.words = pvtAllocate(context, some.wordCount, sizeof *some.words);
+    for (size_t i = 0; i < some.wordCount && some.words != NULL; ++i) {
+        some.words[i] = volume->grid->words[i] | cells->voxels.words[i];
+    }
+    pvtStatus status = some.words != NULL ? CreateAxes(context, &some, volume->partly)
+                                          : pvtContext_GetStatus(context);
+    pvtRelease(context, some.words);
+    for (int axis = 0; axis < 3 && status == PVT_OK; ++axis) {
+        volume->cellWords[axis] = pvtAllocate(context, cells->count, sizeof(uint64_t));
+        status = volume->cellWords[axis] != NULL ? PVT_OK : pvtContext_GetStatus(context);
+    }
+    if (status != PVT_OK) {
+        FreeCells(context, volume);
+        return status;
+    }
+    volume->cells = cells;
+    for (size_t i = 0; i < cells->count; ++i) {
+        const uint64_t word = cells->cells[i];
+        volume->cellWords[PVT_AXIS_X][i] = SwapHighDigits(SwapLowDigits(word));
+        volume->cellWords[PVT_AXIS_Y][i] = SwapHighDigits(word);
+        volume->cellWords[PVT_AXIS_Z][i] = word;
+    }
     return PVT_OK;
 }
 
 void pvtSliceVolume_Free(pvtContext* context, pvtSliceVolume* volume)
 {
-    for (int axis = 0; axis < 3; ++axis) {
-        pvtRelease(context, volume->axes[axis].words);
-        pvtRelease(context, volume->axes[axis].ranges);
-    }
+    FreeColumns(context, volume->axes);
+    FreeCells(context, volume);
     *volume = (pvtSliceVolume){0};
 }

@@ -109,7 +109,8 @@ static pvtStatus MeasureSolid(pvtContext* context, const pvtBuildOptions* option
         status = pvtMakeViews(context, &views, &build.views);
     }
     if (status == PVT_OK) {
-        status = pvtMeasureGrid(context, &build.views, &build.bounds, MEASURE_SIZE, &build.allowed,
+        const pvtMeasureGridOptions grid = {&build.views, &build.bounds, MEASURE_SIZE};
+        status = pvtMeasureGrid(context, &grid, &build.allowed, &build.cells,
                                 &build.stats.measureOfSolid);
     }
     pvtBuild_Free(context, &build);

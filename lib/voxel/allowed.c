@@ -20,10 +20,8 @@ pvtStatus pvtMakeAllowedGrid(pvtContext* context, const pvtSolid* solid, double 
         return pvtDilateGrid(context, &solid->inside, reach, allowed);
     }
     const pvtStatus status = pvtCopyBitGrid(context, &solid->inside, allowed);
-    if (status == PVT_OK) {
-        for (size_t i = 0; i < allowed->wordCount; ++i) {
-            allowed->words[i] &= ~solid->surface.words[i];
-        }
+    for (size_t i = 0; i < allowed->wordCount && status == PVT_OK; ++i) {
+        allowed->words[i] &= ~solid->surface.words[i];
     }
     return status;
 }

@@ -12,9 +12,15 @@
 
 enum { MIN_PADDING = 2, MIN_RESOLUTION = 8, MAX_RESOLUTION = 2048 };
 
+// The bounds lie an eighth of a voxel off the middle, which is half a cell: faces that are whole
+// voxels, halves or quarters of them apart, as those of buildings often are, then run through
+// cells and not between two, both of which they would touch.
+static const double OFF_MIDDLE = 0.125;
+
 // What a whole run holds at its peak, measured in grids: the solid that follows has three, one more
-// is at work, and sections, chains and polygons take as much again and a little more.
-enum { GRIDS_OF_A_RUN = 9 };
+// is at work, and sections, chains and polygons take as much again and a little more. To these
+// come bytes for each touched voxel, of which there are about as many as on the sides of the grid.
+enum { GRIDS_OF_A_RUN = 9, BYTES_OF_A_TOUCHED_VOXEL = 100 };
 
 pvtVoxelizeOptions pvtDefaultVoxelizeOptions(void)
 {
@@ -113,6 +119,12 @@ static double CountBytes(const double size[3])
     return ceil(size[0] / 64.0) * 8.0 * size[1] * size[2];
 }
 
+static double CountBytesOfRun(const double size[3])
+{
+    const double touched = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+    return GRIDS_OF_A_RUN * CountBytes(size) + BYTES_OF_A_TOUCHED_VOXEL * touched;
+}
+
 static void CountSides(pvtVec3 extent, double voxelSize, double padding, double size[3])
 {
     const double free = fmax(MIN_PADDING, ceil(padding / voxelSize - 1e-9));
@@ -130,7 +142,7 @@ static int FindFittingResolution(pvtVec3 extent, double padding, double bytes)
         const int middle = (fits + tooFine) / 2;
         double size[3];
         CountSides(extent, GetLongest(extent) / middle, padding, size);
-        if (CountBytes(size) * GRIDS_OF_A_RUN <= bytes) {
+        if (CountBytesOfRun(size) <= bytes) {
             fits = middle;
         } else {
             tooFine = middle;
@@ -194,7 +206,7 @@ pvtStatus pvtMakeGridFrame(pvtContext* context, const pvtVoxelizeOptions* option
     for (int axis = 0; axis < 3; ++axis) {
         const double center = pvtGetAxis(box.lower, axis) + 0.5 * pvtGetAxis(extent, axis);
         frame->size[axis] = (int)size[axis];
-        pvtSetAxis(&frame->origin, axis, center - 0.5 * size[axis] * voxelSize);
+        pvtSetAxis(&frame->origin, axis, center - (0.5 * size[axis] + OFF_MIDDLE) * voxelSize);
     }
     return PVT_OK;
 }

@@ -14,6 +14,7 @@
 // cut by less again, and every interval is widened by 2e-9 at each of its ends. So no touched
 // voxel is missed, and none is marked that is farther from the triangle than 4e-9 along any axis.
 #include "bit_grid.h"
+#include "cell_grid.h"
 #include "frame.h"
 
 #include "base/context.h"
@@ -34,10 +35,12 @@ typedef struct RowSpan {
 typedef struct Voxelizer {
     pvtContext* context;
     const pvtMesh* mesh;
+    const pvtGridFrame* frame;
     pvtBitGrid* grid;
-    double scale;    // [vx/wu]
-    RowSpan* spans;  // for each worker, one for each y
-    size_t spanStep; // entries for a worker
+    pvtCellGrid* cells; // instead of the grid: coordinates count in cells then
+    double scale;       // [vx/wu]
+    RowSpan* spans;     // for each worker, one for each y
+    size_t spanStep;    // entries for a worker
     atomic_bool cancelled;
 } Voxelizer;
 
@@ -81,8 +84,32 @@ static void MarkBits(uint64_t* word, uint64_t mask)
     }
 }
 
-static void MarkSpan(const pvtBitGrid* grid, int y, int z, int firstX, int lastX)
+// The cells of a row that lie in voxel x, as bits of its word.
+static uint64_t GetCellBits(int x, int y, int z, int firstX, int lastX)
 {
+    const int first = firstX > PVT_CELLS * x ? firstX - PVT_CELLS * x : 0;
+    const int last = lastX < PVT_CELLS * x + PVT_CELLS - 1 ? lastX - PVT_CELLS * x : PVT_CELLS - 1;
+    const int row = PVT_CELLS * (y % PVT_CELLS + PVT_CELLS * (z % PVT_CELLS));
+    return pvtMakeMask((unsigned)first, (unsigned)last + 1) << row;
+}
+
+static void MarkCells(const pvtCellGrid* cells, int y, int z, int firstX, int lastX)
+{
+    for (int x = firstX / PVT_CELLS; x <= lastX / PVT_CELLS; ++x) {
+        const size_t index = pvtCellGrid_Find(cells, x, y / PVT_CELLS, z / PVT_CELLS);
+        if (index != PVT_NO_CELLS) {
+            MarkBits(&cells->cells[index], GetCellBits(x, y, z, firstX, lastX));
+        }
+    }
+}
+
+static void MarkSpan(const Voxelizer* voxelizer, int y, int z, int firstX, int lastX)
+{
+    if (voxelizer->cells != NULL) {
+        MarkCells(voxelizer->cells, y, z, firstX, lastX);
+        return;
+    }
+    const pvtBitGrid* grid = voxelizer->grid;
     uint64_t* row = pvtBitGrid_GetRow(grid, y, z);
     const size_t first = (size_t)firstX >> 6;
     const size_t last = (size_t)lastX >> 6;
@@ -99,9 +126,26 @@ static void MarkSpan(const pvtBitGrid* grid, int y, int z, int firstX, int lastX
     MarkBits(&row[last], tail);
 }
 
-// True when the words of a short span are marked already.
-static bool IsSpanMarked(const pvtBitGrid* grid, int y, int z, RowSpan span)
+static bool AreCellsMarked(const pvtCellGrid* cells, int y, int z, RowSpan span)
 {
+    for (int x = span.first / PVT_CELLS; x <= span.last / PVT_CELLS; ++x) {
+        const size_t index = pvtCellGrid_Find(cells, x, y / PVT_CELLS, z / PVT_CELLS);
+        const uint64_t bits = GetCellBits(x, y, z, span.first, span.last);
+        if (index != PVT_NO_CELLS &&
+            (~__atomic_load_n(&cells->cells[index], __ATOMIC_RELAXED) & bits) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// True when the words of a short span are marked already.
+static bool IsSpanMarked(const Voxelizer* voxelizer, int y, int z, RowSpan span)
+{
+    if (voxelizer->cells != NULL) {
+        return AreCellsMarked(voxelizer->cells, y, z, span);
+    }
+    const pvtBitGrid* grid = voxelizer->grid;
     const uint64_t* row = pvtBitGrid_GetRow(grid, y, z);
     const size_t first = (size_t)span.first >> 6;
     const size_t last = (size_t)span.last >> 6;
@@ -239,7 +283,7 @@ static void MarkSlab(const Voxelizer* voxelizer, const Triangle* t, Slab* slab)
         const int first = slab->spans[y].first;
         const int last = slab->spans[y].last;
         if (first <= last) {
-            MarkSpan(voxelizer->grid, y, slab->z, first, last);
+            MarkSpan(voxelizer, y, slab->z, first, last);
         }
     }
 }
@@ -257,17 +301,16 @@ static void MarkTriangle(Voxelizer* voxelizer, Triangle* t, RowSpan* spans)
     if ((x.first < x.last) + (y.first < y.last) + (z.first < z.last) <= 1) {
         for (int k = z.first; k <= z.last; ++k) {
             for (int j = y.first; j <= y.last; ++j) {
-                MarkSpan(voxelizer->grid, j, k, x.first, x.last);
+                MarkSpan(voxelizer, j, k, x.first, x.last);
             }
         }
         return;
     }
     // Where triangles are smaller than voxels, others have often marked all there is to mark.
     if (x.last - x.first <= 1 && y.last - y.first <= 1 && z.last - z.first <= 1 &&
-        IsSpanMarked(voxelizer->grid, y.first, z.first, x) &&
-        IsSpanMarked(voxelizer->grid, y.last, z.first, x) &&
-        IsSpanMarked(voxelizer->grid, y.first, z.last, x) &&
-        IsSpanMarked(voxelizer->grid, y.last, z.last, x)) {
+        IsSpanMarked(voxelizer, y.first, z.first, x) &&
+        IsSpanMarked(voxelizer, y.last, z.first, x) &&
+        IsSpanMarked(voxelizer, y.first, z.last, x) && IsSpanMarked(voxelizer, y.last, z.last, x)) {
         return;
     }
     SortByZ(t);
@@ -293,7 +336,7 @@ static void MarkTriangles(size_t begin, size_t end, int worker, void* taskData)
 {
     Voxelizer* voxelizer = taskData;
     const pvtMesh* mesh = voxelizer->mesh;
-    const pvtVec3 origin = voxelizer->grid->frame.origin;
+    const pvtVec3 origin = voxelizer->frame->origin;
     RowSpan* spans = voxelizer->spans + (size_t)worker * voxelizer->spanStep;
     for (size_t i = begin; i < end; ++i) {
         if ((i - begin) % CANCEL_INTERVAL == 0 && ShouldStop(voxelizer, i, worker)) {
@@ -308,20 +351,29 @@ static void MarkTriangles(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
-static pvtStatus MarkMesh(pvtContext* context, const pvtMesh* mesh, pvtBitGrid* surface)
+static pvtStatus MarkMesh(Voxelizer* voxelizer)
 {
-    Voxelizer voxelizer = {.context = context, .mesh = mesh, .grid = surface};
-    voxelizer.scale = 1.0 / surface->frame.voxelSize;
-    voxelizer.spanStep = ((size_t)surface->frame.size[1] / ALIGN_INTS + 1) * ALIGN_INTS;
-    voxelizer.spans =
-        pvtAllocate(context, (size_t)pvtContext_GetThreadCount(context) * voxelizer.spanStep,
-                    sizeof *voxelizer.spans);
-    if (voxelizer.spans == NULL) {
+    pvtContext* context = voxelizer->context;
+    const int parts = voxelizer->cells != NULL ? PVT_CELLS : 1;
+    voxelizer->scale = parts / voxelizer->frame->voxelSize;
+    voxelizer->spanStep =
+        ((size_t)(voxelizer->frame->size[1] * parts) / ALIGN_INTS + 1) * ALIGN_INTS;
+    voxelizer->spans =
+        pvtAllocate(context, (size_t)pvtContext_GetThreadCount(context) * voxelizer->spanStep,
+                    sizeof *voxelizer->spans);
+    if (voxelizer->spans == NULL) {
         return pvtContext_GetStatus(context);
     }
-    pvtParallelFor(context, MarkTriangles, mesh->triangleCount, 1, &voxelizer);
-    pvtRelease(context, voxelizer.spans);
-    return atomic_load(&voxelizer.cancelled) ? pvtFailCancelled(context) : PVT_OK;
+    pvtParallelFor(context, MarkTriangles, voxelizer->mesh->triangleCount, 1, voxelizer);
+    pvtRelease(context, voxelizer->spans);
+    return atomic_load(&voxelizer->cancelled) ? pvtFailCancelled(context) : PVT_OK;
+}
+
+pvtStatus pvtVoxelizeCells(pvtContext* context, const pvtMesh* mesh, pvtCellGrid* cells)
+{
+    Voxelizer voxelizer = {
+        .context = context, .mesh = mesh, .frame = &cells->voxels.frame, .cells = cells};
+    return MarkMesh(&voxelizer);
 }
 
 pvtStatus pvtVoxelizeMesh(pvtContext* context, const pvtVoxelizeOptions* options,
@@ -335,7 +387,9 @@ pvtStatus pvtVoxelizeMesh(pvtContext* context, const pvtVoxelizeOptions* options
         status = pvtCreateBitGrid(context, &frame, surface);
     }
     if (status == PVT_OK) {
-        status = MarkMesh(context, mesh, surface);
+        Voxelizer voxelizer = {
+            .context = context, .mesh = mesh, .frame = &surface->frame, .grid = surface};
+        status = MarkMesh(&voxelizer);
     }
     if (status != PVT_OK) {
         pvtBitGrid_Free(context, surface);

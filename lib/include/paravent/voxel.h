@@ -101,6 +101,31 @@ PVT_API pvtStatus pvtSuggestSmallestHole(pvtContext* context, const pvtSolidOpti
 PVT_API pvtStatus pvtMakeAllowedGrid(pvtContext* context, const pvtSolid* solid, double tolerance,
                                      pvtBitGrid* allowed);
 
+/// Voxels of a grid that are finer than the others: PVT_CELLS³ cells each.
+typedef struct pvtCellGrid {
+    pvtBitGrid voxels; ///< which
+    uint32_t* ranks;   ///< one a word of `voxels`: how many are set in the words before it
+    uint64_t* cells;   ///< one a voxel of these, in order: cell (i, j, k) is bit i + 4 j + 16 k
+    size_t count;      ///< of voxels
+} pvtCellGrid;
+
+enum { PVT_CELLS = 4 };
+
+/// The cells of a voxel; 0 outside of the grid, and for a voxel that is not one of these.
+PVT_API uint64_t pvtCellGrid_Get(const pvtCellGrid* grid, int x, int y, int z);
+PVT_API void pvtCellGrid_Free(pvtContext* context, pvtCellGrid* grid);
+
+/// Which part of the touched voxels is inside, judged at cells of a quarter of a voxel: what outside
+/// and inside voxels reach through cells that no triangle touches, at equal speed, belongs to the
+/// one that comes first, so that they meet in an opening narrower than a voxel; what is neither
+/// outside nor has an outside cell among its 26 neighbours is inside. So surface that nobody sees,
+/// as where the parts of a model overlap, is inside too.
+/// Voxels all of whose cells are inside are added to `allowed`, which was made by
+/// pvtMakeAllowedGrid at tolerance 0; those with some are put into `cells`.
+PVT_API pvtStatus pvtRefineAllowedGrid(pvtContext* context, const pvtMesh* mesh,
+                                       const pvtSolid* solid, pvtBitGrid* allowed,
+                                       pvtCellGrid* cells);
+
 /// Squared distance [vx²] from each voxel's centre to the centre of the nearest marked voxel,
 /// exact, one value a voxel in x, y, z order; values above `limit` [vx²] are stored as limit + 1.
 /// `distances` has frame.size[0] × [1] × [2] entries.

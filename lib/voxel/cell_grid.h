@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// What the voxel room's own files use of cell grids.
+#ifndef PVT_VOXEL_CELL_GRID_H
+#define PVT_VOXEL_CELL_GRID_H
+
+#include "bit_grid.h"
+
+#define PVT_NO_CELLS SIZE_MAX
+
+/// All cells clear. Takes over `voxels`, whose frame it has; both are empty on failure.
+pvtStatus pvtCreateCellGrid(pvtContext* context, pvtBitGrid* voxels, pvtCellGrid* grid);
+
+/// Place of a voxel's word in `cells`; PVT_NO_CELLS if it has none.
+static inline size_t pvtCellGrid_Find(const pvtCellGrid* grid, int x, int y, int z)
+{
+    const size_t word =
+        pvtGetRowIndex(&grid->voxels, y, z) * grid->voxels.wordsPerRow + (size_t)x / 64;
+    const uint64_t bits = grid->voxels.words[word];
+    const uint64_t bit = UINT64_C(1) << (x % 64);
+    return (bits & bit) == 0 ? PVT_NO_CELLS
+                             : grid->ranks[word] + (size_t)pvtCountBits(bits & (bit - 1));
+}
+
+/// Marks the cells that a triangle touches, as pvtVoxelizeMesh does with voxels.
+pvtStatus pvtVoxelizeCells(pvtContext* context, const pvtMesh* mesh, pvtCellGrid* cells);
+
+#endif

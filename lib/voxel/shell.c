@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT
+// Which part of the touched voxels is inside, at a quarter of their size.
+//
+// A surface takes up a layer of voxels, which is lost on all sides of a strict occluder, and where
+// the parts of a model overlap within it as well. Cut into 4 × 4 × 4 cells, one word each, that
+// layer is as thin as at four times the resolution, for the memory of a few grids. Two waves start
+// at the same time, one from the outside voxels and one from the inside, and go through free cells,
+// a cell a step. Where the surface is closed they never meet; at a crack that the voxels had closed
+// they meet in it, so that it stays closed.
+#include "bit_grid.h"
+#include "cell_grid.h"
+
+#include "base/context.h"
+
+#include <string.h>
+
+enum { SIDES = 6, CANCEL_INTERVAL = 1024 };
+
+// What lies beyond a side of a touched voxel when it is not touched.
+#define OUTSIDE UINT32_MAX
+#define INSIDE (UINT32_MAX - 1)
+
+static const uint64_t FIRST_X = UINT64_C(0x1111111111111111);
+static const uint64_t FIRST_Y = UINT64_C(0x000F000F000F000F);
+
+typedef struct Waves {
+    uint64_t outside, inside;
+} Waves;
+
+typedef struct Shell {
+    pvtContext* context;
+    const pvtSolid* solid;
+    const pvtCellGrid* touched;
+    uint16_t (*places)[3];         // of the voxels
+    uint32_t (*neighbours)[SIDES]; // below and above along x, y, z
+    Waves* waves;                  // cells that the waves have taken
+    Waves* next;                   // and those that they take in this step
+    uint8_t* active;               // whether a voxel's cells may change in this step
+    uint8_t* woken;                // and in the next
+    bool changed;
+    uint64_t* allowed; // the outcome
+} Shell;
+
+static uint32_t FindNeighbour(const Shell* shell, int x, int y, int z)
+{
+    const int* size = shell->touched->voxels.frame.size;
+    if (x < 0 || y < 0 || z < 0 || x >= size[0] || y >= size[1] || z >= size[2]) {
+        return OUTSIDE;
+    }
+    const size_t index = pvtCellGrid_Find(shell->touched, x, y, z);
+    return index != PVT_NO_CELLS                            ? (uint32_t)index
+           : pvtBitGrid_Get(&shell->solid->inside, x, y, z) ? INSIDE
+                                                            : OUTSIDE;
+}
+
+static void ListLayer(Shell* shell, int z)
+{
+    const pvtBitGrid* voxels = &shell->touched->voxels;
+    for (int y = 0; y < voxels->frame.size[1]; ++y) {
+        const uint64_t* row = pvtBitGrid_GetRow(voxels, y, z);
+        for (size_t w = 0; w < voxels->wordsPerRow; ++w) {
+            size_t index =
+                shell->touched->ranks[pvtGetRowIndex(voxels, y, z) * voxels->wordsPerRow + w];
+            for (uint64_t bits = row[w]; bits != 0; bits &= bits - 1, ++index) {
+                const int x = (int)(w * 64) + __builtin_ctzll(bits);
+                const uint32_t neighbours[SIDES] = {
+                    FindNeighbour(shell, x - 1, y, z), FindNeighbour(shell, x + 1, y, z),
+                    FindNeighbour(shell, x, y - 1, z), FindNeighbour(shell, x, y + 1, z),
+                    FindNeighbour(shell, x, y, z - 1), FindNeighbour(shell, x, y, z + 1)};
+                memcpy(shell->neighbours[index], neighbours, sizeof neighbours);
+                shell->places[index][0] = (uint16_t)x;
+                shell->places[index][1] = (uint16_t)y;
+                shell->places[index][2] = (uint16_t)z;
+                shell->active[index] = 1;
+            }
+        }
+    }
+}
+
+static void ListLayers(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    for (size_t z = begin; z < end; ++z) {
+        ListLayer(taskData, (int)z);
+    }
+}
+
+// The cells of a voxel that have one of these as a neighbour, across its side.
+static uint64_t SpreadAcross(uint64_t cells, int side)
+{
+    switch (side) {
+    case 0:
+        return cells >> 3 & FIRST_X;
+    case 1:
+        return (cells & FIRST_X) << 3;
+    case 2:
+        return cells >> 12 & FIRST_Y;
+    case 3:
+        return (cells & FIRST_Y) << 12;
+    case 4:
+        return cells >> 48;
+    default:
+        return cells << 48;
+    }
+}
+
+// Cells moved by one, away from a side, across which others come in.
+static uint64_t Move(uint64_t cells, uint64_t beyond, int side)
+{
+    const uint64_t moved[SIDES] = {(cells & ~(FIRST_X << 3)) << 1,
+                                   (cells & ~FIRST_X) >> 1,
+                                   (cells & ~(FIRST_Y << 12)) << 4,
+                                   (cells & ~FIRST_Y) >> 4,
+                                   cells << 16,
+                                   cells >> 16};
+    return moved[side] | SpreadAcross(beyond, side);
+}
+
+// Cells that have one of these as a neighbour within the voxel.
+static uint64_t Spread(uint64_t cells)
+{
+    return (cells & ~(FIRST_X << 3)) << 1 | (cells & ~FIRST_X) >> 1 |
+           (cells & ~(FIRST_Y << 12)) << 4 | (cells & ~FIRST_Y) >> 4 | cells << 16 | cells >> 16;
+}
+
+static Waves GetWaves(const Shell* shell, uint32_t voxel)
+{
+    return voxel < INSIDE ? shell->waves[voxel]
+                          : (Waves){.outside = voxel == OUTSIDE ? ~UINT64_C(0) : 0,
+                                    .inside = voxel == INSIDE ? ~UINT64_C(0) : 0};
+}
+
+// Where both come at once the outside goes first.
+static void StepVoxels(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const Shell* shell = taskData;
+    for (size_t i = begin; i < end; ++i) {
+        if (shell->active[i] == 0) {
+            continue;
+        }
+        const Waves here = shell->waves[i];
+        const uint64_t free = ~shell->touched->cells[i] & ~here.outside & ~here.inside;
+        Waves near = {0};
+        if (free != 0) {
+            near = (Waves){Spread(here.outside), Spread(here.inside)};
+            for (int side = 0; side < SIDES; ++side) {
+                const Waves there = GetWaves(shell, shell->neighbours[i][side]);
+                near.outside |= SpreadAcross(there.outside, side);
+                near.inside |= SpreadAcross(there.inside, side);
+            }
+        }
+        shell->next[i].outside = free & near.outside;
+        shell->next[i].inside = free & near.inside & ~near.outside;
+    }
+}
+
+static void Wake(const Shell* shell, size_t voxel)
+{
+    __atomic_store_n(&shell->woken[voxel], 1, __ATOMIC_RELAXED);
+}
+
+static void TakeCells(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    Shell* shell = taskData;
+    bool changed = false;
+    for (size_t i = begin; i < end; ++i) {
+        const Waves next = shell->next[i];
+        if (shell->active[i] == 0 || (next.outside | next.inside) == 0) {
+            continue;
+        }
+        shell->waves[i].outside |= next.outside;
+        shell->waves[i].inside |= next.inside;
+        changed = true;
+        Wake(shell, i);
+        for (int side = 0; side < SIDES; ++side) {
+            if (shell->neighbours[i][side] < INSIDE) {
+                Wake(shell, shell->neighbours[i][side]);
+            }
+        }
+    }
+    if (changed) {
+        __atomic_store_n(&shell->changed, true, __ATOMIC_RELAXED);
+    }
+}
+
+static pvtStatus RunWaves(pvtContext* context, Shell* shell)
+{
+    const size_t count = shell->touched->count;
+    do {
+        if (pvtIsCancelled(context)) {
+            return pvtFailCancelled(context);
+        }
+        shell->changed = false;
+        memset(shell->woken, 0, count);
+        pvtParallelFor(context, StepVoxels, count, CANCEL_INTERVAL, shell);
+        pvtParallelFor(context, TakeCells, count, CANCEL_INTERVAL, shell);
+        uint8_t* woken = shell->woken;
+        shell->woken = shell->active;
+        shell->active = woken;
+    } while (shell->changed);
+    return PVT_OK;
+}
+
+// Adds the neighbours on both sides along an axis; the voxels below and above lend theirs.
+static uint64_t Dilate(const uint64_t voxels[3], int axis)
+{
+    return voxels[1] | Move(voxels[1], voxels[0], 2 * axis) |
+           Move(voxels[1], voxels[2], 2 * axis + 1);
+}
+
+// The voxel's cells that are outside or have an outside cell among their 26 neighbours. A plane
+// touches no cell whose neighbours all lie on its inner side or on it.
+static uint64_t FindCellsNearOutside(const Shell* shell, const uint16_t place[3])
+{
+    uint64_t layers[3];
+    for (int z = 0; z < 3; ++z) {
+        uint64_t rows[3];
+        for (int y = 0; y < 3; ++y) {
+            uint64_t cells[3];
+            for (int x = 0; x < 3; ++x) {
+                const uint32_t voxel =
+                    FindNeighbour(shell, place[0] + x - 1, place[1] + y - 1, place[2] + z - 1);
+                cells[x] = GetWaves(shell, voxel).outside;
+            }
+            rows[y] = Dilate(cells, 0);
+        }
+        layers[z] = Dilate(rows, 1);
+    }
+    return Dilate(layers, 2);
+}
+
+static void JudgeVoxels(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const Shell* shell = taskData;
+    for (size_t i = begin; i < end; ++i) {
+        if (i % CANCEL_INTERVAL == 0 && pvtIsCancelled(shell->context)) {
+            return;
+        }
+        shell->allowed[i] = ~FindCellsNearOutside(shell, shell->places[i]);
+    }
+}
+
+static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
+{
+    const size_t count = shell->touched->count;
+    shell->places = pvtAllocate(context, count, sizeof *shell->places);
+    shell->neighbours = pvtAllocate(context, count, sizeof *shell->neighbours);
+    shell->waves = pvtAllocate(context, count, sizeof *shell->waves);
+    shell->next = pvtAllocate(context, count, sizeof *shell->next);
+    shell->active = pvtAllocate(context, count, sizeof *shell->active);
+    shell->woken = pvtAllocate(context, count, sizeof *shell->woken);
+    shell->allowed = pvtAllocate(context, count, sizeof *shell->allowed);
+    if (shell->places == NULL || shell->neighbours == NULL || shell->waves == NULL ||
+        shell->next == NULL || shell->active == NULL || shell->woken == NULL ||
+        shell->allowed == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    pvtParallelFor(context, ListLayers, (size_t)shell->touched->voxels.frame.size[2], 4, shell);
+    const pvtStatus status = RunWaves(context, shell);
+    if (status == PVT_OK) {
+        pvtParallelFor(context, JudgeVoxels, count, CANCEL_INTERVAL, shell);
+    }
+    return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
+}
+
+static bool IsMixed(uint64_t cells)
+{
+    return cells != 0 && cells != ~UINT64_C(0);
+}
+
+// Whole voxels become allowed; those with some cells are kept with them.
+static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid* allowed,
+                            pvtCellGrid* cells)
+{
+    const size_t count = shell->touched->count;
+    pvtBitGrid mixed;
+    if (pvtCreateBitGrid(context, &allowed->frame, &mixed) != PVT_OK) {
+        return pvtContext_GetStatus(context);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (IsMixed(shell->allowed[i])) {
+            const uint16_t* place = shell->places[i];
+            pvtSetBit(pvtBitGrid_GetRow(&mixed, place[1], place[2]), place[0]);
+        }
+    }
+    const pvtStatus status = pvtCreateCellGrid(context, &mixed, cells);
+    if (status != PVT_OK) {
+        return status;
+    }
+    // The shell's voxels are in the same order as those that are kept.
+    size_t next = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (IsMixed(shell->allowed[i])) {
+            cells->cells[next++] = shell->allowed[i];
+        } else if (shell->allowed[i] != 0) {
+            const uint16_t* place = shell->places[i];
+            pvtSetBit(pvtBitGrid_GetRow(allowed, place[1], place[2]), place[0]);
+        }
+    }
+    return PVT_OK;
+}
+
+static void FreeShell(pvtContext* context, Shell* shell)
+{
+    pvtRelease(context, shell->places);
+    pvtRelease(context, shell->neighbours);
+    pvtRelease(context, shell->waves);
+    pvtRelease(context, shell->next);
+    pvtRelease(context, shell->active);
+    pvtRelease(context, shell->woken);
+    pvtRelease(context, shell->allowed);
+}
+
+pvtStatus pvtRefineAllowedGrid(pvtContext* context, const pvtMesh* mesh, const pvtSolid* solid,
+                               pvtBitGrid* allowed, pvtCellGrid* cells)
+{
+    *cells = (pvtCellGrid){0};
+    pvtBitGrid voxels;
+    pvtStatus status = pvtCopyBitGrid(context, &solid->surface, &voxels);
+    pvtCellGrid touched = {0};
+    if (status == PVT_OK) {
+        status = pvtCreateCellGrid(context, &voxels, &touched);
+    }
+    if (status == PVT_OK) {
+        status = pvtVoxelizeCells(context, mesh, &touched);
+    }
+    Shell shell = {.context = context, .solid = solid, .touched = &touched};
+    if (status == PVT_OK) {
+        status = FindAllowedCells(context, &shell);
+    }
+    if (status == PVT_OK) {
+        status = SortVoxels(context, &shell, allowed, cells);
+    }
+    FreeShell(context, &shell);
+    pvtCellGrid_Free(context, &touched);
+    return status;
+}
