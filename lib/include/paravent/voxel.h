@@ -115,13 +115,13 @@ enum { PVT_CELLS = 4 };
 PVT_API uint64_t pvtCellGrid_Get(const pvtCellGrid* grid, int x, int y, int z);
 PVT_API void pvtCellGrid_Free(pvtContext* context, pvtCellGrid* grid);
 
-/// Which part of the touched voxels is inside, judged at cells of a quarter of a voxel: what outside
-/// and inside voxels reach through cells that no triangle touches, at equal speed, belongs to the
-/// one that comes first, so that they meet in an opening narrower than a voxel; what is neither
-/// outside nor has an outside cell among its 26 neighbours is inside. So surface that nobody sees,
-/// as where the parts of a model overlap, is inside too.
-/// Voxels all of whose cells are inside are added to `allowed`, which was made by
-/// pvtMakeAllowedGrid at tolerance 0; those with some are put into `cells`.
+/// Which part of the touched voxels is inside, judged at cells of a quarter of a voxel: what
+/// outside and inside voxels reach through cells that no triangle touches, at equal speed, belongs
+/// to the one that comes first, so that they meet in an opening narrower than a voxel; what is
+/// neither outside nor has an outside cell among its 26 neighbours is inside. So surface that
+/// nobody sees, as where the parts of a model overlap, is inside too. Voxels all of whose cells are
+/// inside are added to `allowed`, which was made by pvtMakeAllowedGrid at tolerance 0; those with
+/// some are put into `cells`.
 PVT_API pvtStatus pvtRefineAllowedGrid(pvtContext* context, const pvtMesh* mesh,
                                        const pvtSolid* solid, pvtBitGrid* allowed,
                                        pvtCellGrid* cells);
