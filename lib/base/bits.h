@@ -38,7 +38,16 @@ static inline uint64_t pvtMakeMask(unsigned begin, unsigned end)
 
 static inline int pvtCountBits(uint64_t word)
 {
+#ifdef __POPCNT__
     return __builtin_popcountll(word);
+#else
+    // Sums of ever wider fields (Warren, Hacker's Delight, 2nd edition 2012, section 5-1): without
+    // the instruction, compilers would call a function.
+    word -= word >> 1 & UINT64_C(0x5555555555555555);
+    word = (word & UINT64_C(0x3333333333333333)) + (word >> 2 & UINT64_C(0x3333333333333333));
+    word = (word + (word >> 4)) & UINT64_C(0x0F0F0F0F0F0F0F0F);
+    return (int)(word * UINT64_C(0x0101010101010101) >> 56);
+#endif
 }
 
 /// Sets the bits from `begin` to `end` − 1 of a row; none when end ≤ begin.

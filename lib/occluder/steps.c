@@ -14,6 +14,8 @@ enum {
     MAX_RESOLUTION = 2048,
     MEASURE_SIZE = 64,
     SELECT_VIEWS = 24,
+    FAST_DIRECTIONS = 16, // a third of the candidates: in a short search the others hardly count
+    FAST_DEPTHS = 16,
     MAX_REFINED = 512, // triangles: beyond, panels are so many that single moves hardly count
 };
 
@@ -301,6 +303,10 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
         pvtPlanOptions options = pvtDefaultPlanOptions();
         options.faces = IsPaper(build) ? NULL : &faces;
         options.axes = !IsPaper(build);
+        if (!IsPaper(build) && build->options->effort == PVT_EFFORT_FAST) {
+            options.directions = FAST_DIRECTIONS;
+            options.depths = FAST_DEPTHS;
+        }
         status = pvtPlanSections(context, &options, volume->grid, &plan);
     }
     if (status == PVT_OK) {

@@ -276,13 +276,20 @@ void pvtSliceGrid(const pvtSliceVolume* volume, const pvtPlane* plane, pvtSliceR
 typedef struct CellSlicing {
     const pvtSliceVolume* volume;
     pvtAxis axis;
-    int64_t first; // height below which the patch over cell (0, 0) does not reach
-    int64_t span;  // to its highest
+    int64_t first;       // height below which the patch over cell (0, 0) does not reach
+    int64_t span;        // to its highest
+    int64_t least, most; // heights of the lowest and the highest end of 16 patches, from the first
     int64_t stepU, stepV;
     Slicing whole, partly; // of the voxels, one cell each
 } CellSlicing;
 
-enum { HEIGHT_BITS = PVT_PLANE_BITS + 3, CELL_HEIGHT_BITS = HEIGHT_BITS - 2, PATCHES = 16 };
+enum {
+    HEIGHT_BITS = PVT_PLANE_BITS + 3,
+    CELL_HEIGHT_BITS = HEIGHT_BITS - 2,
+    PATCHES = 16,
+    // A patch over a voxel rises by two at most.
+    MAX_VOXELS = 4
+};
 
 // All cells of a voxel of the column (u, v), at position n along the axis.
 static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t n)
@@ -316,29 +323,27 @@ static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t
 static uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
 {
     const int64_t corner = slicing->first + PVT_CELLS * (slicing->stepU * u + slicing->stepV * v);
-    int32_t low[PATCHES], high[PATCHES];
-    int32_t least = INT32_MAX, most = INT32_MIN;
-    for (int i = 0; i < PATCHES; ++i) {
+    const int64_t lowest = corner + slicing->least;
+    const int64_t voxel = lowest >> HEIGHT_BITS;
+    const int64_t last = (corner + slicing->most) >> HEIGHT_BITS;
+    uint64_t cells[MAX_VOXELS] = {0};
+    uint64_t any = 0;
+    for (int64_t n = voxel; n <= last; ++n) {
+        cells[n - voxel] = GetColumnCells(slicing, u, v, n);
+        any |= cells[n - voxel];
+    }
+    uint64_t patches = 0;
+    for (int i = 0; i < PATCHES && any != 0; ++i) {
         const int64_t at = corner + slicing->stepU * (i % 4) + slicing->stepV * (i / 4);
-        low[i] = (int32_t)(at >> CELL_HEIGHT_BITS);
-        high[i] = (int32_t)((at + slicing->span) >> CELL_HEIGHT_BITS);
-        least = low[i] < least ? low[i] : least;
-        most = high[i] > most ? high[i] : most;
-    }
-    uint32_t blocked = 0;
-    uint64_t cells = 0;
-    for (int32_t level = least; level <= most && blocked != 0xFFFF; ++level) {
-        if (level == least || (level & (PVT_CELLS - 1)) == 0) {
-            cells = GetColumnCells(slicing, u, v, level >> 2);
+        const int low = (int)((at >> CELL_HEIGHT_BITS) - PVT_CELLS * voxel);
+        const int high = (int)(((at + slicing->span) >> CELL_HEIGHT_BITS) - PVT_CELLS * voxel);
+        uint64_t all = 1;
+        for (int level = low; level <= high; ++level) {
+            all &= cells[level / PVT_CELLS] >> (PATCHES * (level % PVT_CELLS) + i);
         }
-        const uint32_t clear = (uint32_t)(~cells >> (PATCHES * (level & (PVT_CELLS - 1)))) & 0xFFFF;
-        uint32_t touching = 0;
-        for (int i = 0; i < PATCHES && clear != 0; ++i) {
-            touching |= (uint32_t)(low[i] <= level && level <= high[i]) << i;
-        }
-        blocked |= clear & touching;
+        patches |= (all & 1) << i;
     }
-    return ~blocked & 0xFFFF;
+    return patches;
 }
 
 static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plane,
@@ -359,6 +364,9 @@ static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plan
                                      .stepU = 2 * (int64_t)plane->slopeU,
                                      .stepV = 2 * (int64_t)plane->slopeV,
                                      .cellsPerVoxel = 1}};
+    const int64_t farU = 3 * slicing.stepU, farV = 3 * slicing.stepV;
+    slicing.least = (farU < 0 ? farU : 0) + (farV < 0 ? farV : 0);
+    slicing.most = (farU > 0 ? farU : 0) + (farV > 0 ? farV : 0) + slicing.span;
     PlaceSamples(plane, PVT_SLICE_COVERED, &slicing.whole);
     slicing.partly = slicing.whole;
     slicing.partly.columns = &volume->partly[plane->axis];

@@ -35,9 +35,9 @@ typedef struct Shell {
     uint32_t (*neighbours)[SIDES]; // below and above along x, y, z
     Waves* waves;                  // cells that the waves have taken
     Waves* next;                   // and those that they take in this step
-    uint8_t* active;               // whether a voxel's cells may change in this step
-    uint8_t* woken;                // and in the next
-    bool changed;
+    uint8_t* woken;                // whether a voxel's cells may change in the next step
+    uint32_t* list;                // those that may in this step
+    size_t listCount;
     uint64_t* allowed; // the outcome
 } Shell;
 
@@ -71,7 +71,7 @@ static void ListLayer(Shell* shell, int z)
                 shell->places[index][0] = (uint16_t)x;
                 shell->places[index][1] = (uint16_t)y;
                 shell->places[index][2] = (uint16_t)z;
-                shell->active[index] = 1;
+                shell->woken[index] = 1;
             }
         }
     }
@@ -135,10 +135,8 @@ static void StepVoxels(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Shell* shell = taskData;
-    for (size_t i = begin; i < end; ++i) {
-        if (shell->active[i] == 0) {
-            continue;
-        }
+    for (size_t k = begin; k < end; ++k) {
+        const size_t i = shell->list[k];
         const Waves here = shell->waves[i];
         const uint64_t free = ~shell->touched->cells[i] & ~here.outside & ~here.inside;
         Waves near = {0};
@@ -163,16 +161,15 @@ static void Wake(const Shell* shell, size_t voxel)
 static void TakeCells(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
-    Shell* shell = taskData;
-    bool changed = false;
-    for (size_t i = begin; i < end; ++i) {
+    const Shell* shell = taskData;
+    for (size_t k = begin; k < end; ++k) {
+        const size_t i = shell->list[k];
         const Waves next = shell->next[i];
-        if (shell->active[i] == 0 || (next.outside | next.inside) == 0) {
+        if ((next.outside | next.inside) == 0) {
             continue;
         }
         shell->waves[i].outside |= next.outside;
         shell->waves[i].inside |= next.inside;
-        changed = true;
         Wake(shell, i);
         for (int side = 0; side < SIDES; ++side) {
             if (shell->neighbours[i][side] < INSIDE) {
@@ -180,26 +177,38 @@ static void TakeCells(size_t begin, size_t end, int worker, void* taskData)
             }
         }
     }
-    if (changed) {
-        __atomic_store_n(&shell->changed, true, __ATOMIC_RELAXED);
+}
+
+// Those that were woken. Mostly they are few, and far from each other.
+static void ListWoken(Shell* shell)
+{
+    const size_t count = shell->touched->count;
+    shell->listCount = 0;
+    for (size_t i = 0; i < count;) {
+        uint64_t eight = 1;
+        if (i + 8 <= count) {
+            memcpy(&eight, shell->woken + i, sizeof eight);
+        }
+        const size_t end = eight == 0 ? i : i + 8 <= count ? i + 8 : count;
+        for (size_t k = i; k < end; ++k) {
+            if (shell->woken[k] != 0) {
+                shell->woken[k] = 0;
+                shell->list[shell->listCount++] = (uint32_t)k;
+            }
+        }
+        i += 8;
     }
 }
 
 static pvtStatus RunWaves(pvtContext* context, Shell* shell)
 {
-    const size_t count = shell->touched->count;
-    do {
+    for (ListWoken(shell); shell->listCount > 0; ListWoken(shell)) {
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
-        shell->changed = false;
-        memset(shell->woken, 0, count);
-        pvtParallelFor(context, StepVoxels, count, CANCEL_INTERVAL, shell);
-        pvtParallelFor(context, TakeCells, count, CANCEL_INTERVAL, shell);
-        uint8_t* woken = shell->woken;
-        shell->woken = shell->active;
-        shell->active = woken;
-    } while (shell->changed);
+        pvtParallelFor(context, StepVoxels, shell->listCount, CANCEL_INTERVAL, shell);
+        pvtParallelFor(context, TakeCells, shell->listCount, CANCEL_INTERVAL, shell);
+    }
     return PVT_OK;
 }
 
@@ -250,11 +259,11 @@ static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
     shell->neighbours = pvtAllocate(context, count, sizeof *shell->neighbours);
     shell->waves = pvtAllocate(context, count, sizeof *shell->waves);
     shell->next = pvtAllocate(context, count, sizeof *shell->next);
-    shell->active = pvtAllocate(context, count, sizeof *shell->active);
+    shell->list = pvtAllocate(context, count, sizeof *shell->list);
     shell->woken = pvtAllocate(context, count, sizeof *shell->woken);
     shell->allowed = pvtAllocate(context, count, sizeof *shell->allowed);
     if (shell->places == NULL || shell->neighbours == NULL || shell->waves == NULL ||
-        shell->next == NULL || shell->active == NULL || shell->woken == NULL ||
+        shell->next == NULL || shell->list == NULL || shell->woken == NULL ||
         shell->allowed == NULL) {
         return pvtContext_GetStatus(context);
     }
@@ -309,7 +318,7 @@ static void FreeShell(pvtContext* context, Shell* shell)
     pvtRelease(context, shell->neighbours);
     pvtRelease(context, shell->waves);
     pvtRelease(context, shell->next);
-    pvtRelease(context, shell->active);
+    pvtRelease(context, shell->list);
     pvtRelease(context, shell->woken);
     pvtRelease(context, shell->allowed);
 }
