@@ -18,6 +18,8 @@ void pvtListExtras(const pvtGenerateOptions* options, const pvtBuildStats* stats
     static const char* const efforts[] = {"fast", "default", "best"};
     const pvtExtra all[PVT_OCCLUDER_EXTRA_COUNT] = {
         {"error_bound", stats->errorBound, NULL},
+        {"surface_polygons", stats->surfacePanels, NULL},
+        {"surface_deviation", stats->deviation, NULL},
         {"tolerance", stats->tolerance, NULL},
         {"smallest_hole", stats->smallestHole, NULL},
         {"resolution", stats->resolution, NULL},
@@ -157,6 +159,8 @@ static void WriteStats(pvtJson* json, const pvtRun* run, const pvtGenerateOption
     pvtJson_Integer(json, "resolution", stats->resolution);
     pvtJson_Number(json, "voxel_size", stats->voxelSize);
     pvtJson_Number(json, "error_bound", stats->errorBound);
+    pvtJson_Integer(json, "surface_polygons", stats->surfacePanels);
+    pvtJson_Number(json, "surface_deviation", stats->deviation);
     pvtJson_Number(json, "inside_fraction", stats->insideFraction);
     pvtJson_Number(json, "measure", stats->measure);
     pvtJson_Number(json, "measure_of_solid", stats->measureOfSolid);
@@ -230,6 +234,10 @@ void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGe
     }
     pvtReport_Say(&run->report, "  error bound  %.4g (voxels of %.4g, %d along the longest side)",
                   stats->errorBound, stats->voxelSize, stats->resolution);
+    if (stats->surfacePanels > 0) {
+        pvtReport_Say(&run->report, "  on surface   %d of the polygons, within %.4g",
+                      stats->surfacePanels, stats->deviation);
+    }
     pvtReport_Say(&run->report, "  time         %.2f s", generated->saved - generated->began);
     PrintSeconds(run, generated);
 }

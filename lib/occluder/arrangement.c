@@ -51,6 +51,14 @@ pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* opti
     return status;
 }
 
+void pvtUseSheets(pvtArrangement* arrangement, const pvtSheetSet* sheets)
+{
+    arrangement->sheets = sheets;
+    if (arrangement->cellsPerVoxel < sheets->cellsPerVoxel) {
+        arrangement->cellsPerVoxel = sheets->cellsPerVoxel;
+    }
+}
+
 pvtStatus pvtSliceAllowed(pvtContext* context, const pvtArrangement* arrangement,
                           const pvtPlane* plane, const pvtSliceWindow* window, pvtBitmap* cells)
 {
@@ -69,6 +77,9 @@ pvtStatus pvtSliceAllowed(pvtContext* context, const pvtArrangement* arrangement
         pvtSliceCells(arrangement->volume, plane, scale, window, cells);
     } else {
         pvtSliceGrid(arrangement->volume, plane, PVT_SLICE_COVERED, scale, cells);
+    }
+    if (arrangement->sheets != NULL) {
+        pvtAddSheetCells(arrangement->sheets, plane, scale, cells);
     }
     return PVT_OK;
 }

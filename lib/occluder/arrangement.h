@@ -6,6 +6,7 @@
 
 #include "fit.h"
 #include "scorer.h"
+#include "sheets.h"
 
 #include <paravent/occluder.h>
 
@@ -26,6 +27,7 @@ typedef struct pvtPlacedPanel {
 typedef struct pvtArrangement {
     pvtScorer scorer;
     const pvtSliceVolume* volume;
+    const pvtSheetSet* sheets; ///< may be null; borrowed
     int cellsPerVoxel;
     pvtPlacedPanel* panels; ///< capacity; those with a count of 0 are free
     int capacity;
@@ -47,6 +49,9 @@ pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* opti
                                const pvtSliceVolume* volume, int capacity,
                                pvtArrangement* arrangement);
 void pvtArrangement_Free(pvtContext* context, pvtArrangement* arrangement);
+
+/// Panels may lie on sheets too, from now on; to be called before any is placed.
+void pvtUseSheets(pvtArrangement* arrangement, const pvtSheetSet* sheets);
 
 /// The bitmap of a plane's allowed cells, made anew when its size differs. Cells outside of the
 /// window (null: there is none) may be clear.

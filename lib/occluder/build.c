@@ -24,6 +24,8 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
         {"voxelize", pvtVoxelizeStep, &build.stats.seconds.voxelize},
         // What a flood from outside does not reach is inside; polygons may lie in part of it.
         {"solid", pvtFillStep, &build.stats.seconds.solid},
+        // Where the surface has no inside behind it, it is its own occluder.
+        {"sheets", pvtSheetStep, &build.stats.seconds.sections},
         // Thousands of planes are tried, and the largest slice of each bin is kept.
         {"sections", pvtSearchStep, &build.stats.seconds.sections},
         // Slices become polygons that can be shortened down to one triangle.

@@ -318,6 +318,12 @@ static bool TiltPanel(Maker* maker)
     if (slot < 0) {
         return false;
     }
+    // A sheet's neighbours are no sheets: its panels stay on their plane.
+    if (maker->arrangement->sheets != NULL &&
+        pvtSheetSet_Find(maker->arrangement->sheets,
+                         &maker->arrangement->panels[slot].panel.plane) != NULL) {
+        return MovePoint(maker);
+    }
     pvtPanel* panel = AddPart(maker, slot);
     const pvtPlane before = panel->plane;
     const double reach = RollReach(maker) / (1 << PVT_POINT_BITS);

@@ -182,6 +182,9 @@ pvtStatus pvtRefineOccluder(pvtContext* context, const pvtRefineOptions* options
         .views = options->views, .bounds = options->bounds, .size = 64, .exponent = 1};
     pvtStatus status =
         pvtCreateArrangement(context, &scorer, volume, options->budget, &refinement.arrangement);
+    if (options->sheets != NULL && options->sheets->count > 0) {
+        pvtUseSheets(&refinement.arrangement, options->sheets);
+    }
     double* sums = SumAreas(context, candidates);
     refinement.trials = pvtAllocate(context, BATCH, sizeof *refinement.trials);
     if (status == PVT_OK && (sums == NULL || refinement.trials == NULL)) {

@@ -2,12 +2,13 @@
 #ifndef PVT_OCCLUDER_REFINE_H
 #define PVT_OCCLUDER_REFINE_H
 
-#include <paravent/occluder.h>
+#include "sheets.h"
 
 typedef struct pvtRefineOptions {
-    int budget;              ///< triangles
-    const pvtViewSet* views; ///< borrowed
-    pvtBox3 bounds;          ///< [wu] what the masks span
+    int budget;                ///< triangles
+    const pvtViewSet* views;   ///< borrowed
+    pvtBox3 bounds;            ///< [wu] what the masks span
+    const pvtSheetSet* sheets; ///< where panels may lie besides the volume; borrowed; may be null
     uint64_t seed;
     int trials;      ///< changes that are tried
     double deadline; ///< on pvtGetSeconds' clock: ends the trials; 0: none

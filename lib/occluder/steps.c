@@ -12,7 +12,6 @@
 enum {
     MIN_RESOLUTION = 8,
     MAX_RESOLUTION = 2048,
-    MEASURE_SIZE = 64,
     SELECT_VIEWS = 24,
     FAST_DIRECTIONS = 16, // a third of the candidates: in a short search the others hardly count
     FAST_DEPTHS = 16,
@@ -46,6 +45,8 @@ void pvtBuild_Free(pvtContext* context, pvtBuild* build)
     pvtSliceVolume_Free(context, &build->volume);
     pvtSliceVolume_Free(context, &build->solidVolume);
     pvtSectionSet_Free(context, &build->sections);
+    pvtSheetSet_Free(context, &build->sheets);
+    pvtBitGrid_Free(context, &build->hiding);
     pvtCandidateSet_Free(context, &build->candidates);
     pvtViewSet_Free(context, &build->views);
     pvtOccluder_Free(context, &build->occluder);
@@ -167,7 +168,7 @@ static bool FindBounds(const pvtBitGrid* grid, pvtBox3* bounds)
     return isFound;
 }
 
-static void WidenBounds(const pvtBitGrid* grid, pvtBox3* bounds)
+void pvtWidenBounds(const pvtBitGrid* grid, pvtBox3* bounds)
 {
     pvtBox3 more;
     if (grid->words != NULL && FindBounds(grid, &more)) {
@@ -180,7 +181,7 @@ static void WidenBounds(const pvtBitGrid* grid, pvtBox3* bounds)
     }
 }
 
-static pvtStatus FailNothingInside(pvtContext* context, const pvtBuild* build)
+pvtStatus pvtFailNothingInside(pvtContext* context, const pvtBuild* build)
 {
     const pvtRemedy* remedy = &build->solid.remedy;
     const int resolution = build->stats.resolution;
@@ -242,10 +243,12 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
                                       &build->cells);
     }
     if (status == PVT_OK && !FindBounds(&build->allowed, &build->bounds)) {
-        status = FailNothingInside(context, build);
+        build->bounds =
+            (pvtBox3){{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+        status = pvtMayUseSheets(build) ? PVT_OK : pvtFailNothingInside(context, build);
     }
     if (status == PVT_OK) {
-        WidenBounds(&build->cells.voxels, &build->bounds);
+        pvtWidenBounds(&build->cells.voxels, &build->bounds);
         status = pvtCreateSliceVolume(context, &build->allowed, &build->volume);
     }
     if (status == PVT_OK && build->cells.count > 0) {
@@ -293,7 +296,9 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
     pvtFaceDirectionSet faces = {0};
     pvtSectionPlan plan = {0};
     if (status == PVT_OK) {
-        status = CreateSlicer(context, build, volume->grid);
+        status = build->solid.strictCount > 0 || build->stats.tolerance > 0.0
+                     ? CreateSlicer(context, build, volume->grid)
+                     : PVT_OK;
     }
     if (status == PVT_OK) {
         const pvtFaceDirectionOptions options = pvtDefaultFaceDirectionOptions();
@@ -334,9 +339,12 @@ pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build)
     }
     pvtStatus status = pvtBuildCandidates(context, &options, GetSlicedVolume(build),
                                           &build->sections, &build->candidates);
+    if (status == PVT_OK) {
+        status = pvtAddSheets(context, &options, build);
+    }
     build->stats.candidateCount = build->candidates.chains.count;
     if (status == PVT_OK && build->candidates.chains.count == 0) {
-        status = FailNothingInside(context, build);
+        status = pvtFailNothingInside(context, build);
     }
     return status;
 }
@@ -389,6 +397,7 @@ pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
     const pvtRefineOptions options = {.budget = build->options->budget,
                                       .views = &build->views,
                                       .bounds = build->bounds,
+                                      .sheets = &build->sheets,
                                       .seed = build->options->seed,
                                       .trials = trials[build->options->effort],
                                       .deadline = deadline};
@@ -405,14 +414,15 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
     if (build->stats.tolerance > 0.0 || !FindBounds(&build->solid.inside, &bounds)) {
         return PVT_OK;
     }
-    const pvtMeasureGridOptions options = {&build->views, &bounds, MEASURE_SIZE};
+    const pvtMeasureGridOptions options = {&build->views, &bounds, PVT_MEASURE_SIZE};
     const pvtStatus status = pvtMeasureGrid(context, &options, &build->solid.inside, NULL, &hidden);
     if (status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "only %.1f %% of what the mesh hides lies strictly inside it at %d voxels, and an "
-               "occluder can hide no more; --tolerance 1vx uses the touched voxels too, a higher "
-               "--resolution finds thinner parts",
-               100.0 * build->stats.measureOfSolid / hidden, build->stats.resolution);
+        pvtLog(
+            context, PVT_LOG_WARNING,
+            "only %.1f %% of what the mesh hides lies strictly inside or flat on it at %d voxels, "
+            "and an occluder can hide no more; --tolerance 1vx uses the touched voxels too, a "
+            "higher --resolution finds thinner parts",
+            100.0 * build->stats.measureOfSolid / hidden, build->stats.resolution);
     }
     return status;
 }
@@ -423,14 +433,15 @@ pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
     pvtStatus status = pvtCheckOccluder(context, &build->allowed, &build->cells,
                                         &build->occluder.mesh, &stats->outside);
     if (status == PVT_OK) {
-        status = pvtMeasureOcclusion(context, &build->views, &build->bounds, MEASURE_SIZE,
+        status = pvtCheckSheets(context, build);
+    }
+    if (status == PVT_OK) {
+        status = pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE,
                                      &build->occluder.mesh, &stats->measure);
         build->occluder.measure = stats->measure;
     }
     if (status == PVT_OK) {
-        const pvtMeasureGridOptions options = {&build->views, &build->bounds, MEASURE_SIZE};
-        status = pvtMeasureGrid(context, &options, &build->allowed, &build->cells,
-                                &stats->measureOfSolid);
+        status = pvtMeasureCeiling(context, build);
     }
     if (status == PVT_OK) {
         status = CompareWithMesh(context, build);

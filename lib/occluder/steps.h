@@ -3,7 +3,7 @@
 #ifndef PVT_OCCLUDER_STEPS_H
 #define PVT_OCCLUDER_STEPS_H
 
-#include <paravent/occluder.h>
+#include "sheets.h"
 
 /// What a build holds on its way; one place to free it.
 typedef struct pvtBuild {
@@ -21,6 +21,9 @@ typedef struct pvtBuild {
     pvtSlicer slicer;
     bool hasSlicer;
     pvtSectionSet sections;
+    pvtSheetSet sheets; ///< empty where the strict interior does
+    double deviation;   ///< [vx] of the surface from them
+    pvtBitGrid hiding;  ///< the allowed voxels and those that the sheets pass; may have no words
     pvtCandidateSet candidates;
     pvtViewSet views;
     pvtOccluder occluder;
@@ -31,11 +34,27 @@ typedef pvtStatus pvtBuildStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtResolveSizes(pvtContext* context, pvtBuild* build);
 pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
+
+enum { PVT_MEASURE_SIZE = 64 }; ///< [px] of the masks that the stats are measured on
+
+/// PVT_NOTHING_INSIDE, with the options that would help.
+pvtStatus pvtFailNothingInside(pvtContext* context, const pvtBuild* build);
+/// Makes the bounds hold the set voxels.
+void pvtWidenBounds(const pvtBitGrid* grid, pvtBox3* bounds);
+/// The measure of everything that may be covered, into the stats; needs the views.
+pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build);
+/// Whether a polygon may lie on the surface itself.
+bool pvtMayUseSheets(const pvtBuild* build);
+/// Adds chains on the sheets to the candidates.
+pvtStatus pvtAddSheets(pvtContext* context, const pvtCandidateOptions* options, pvtBuild* build);
+/// Checks what pvtCheckOccluder does not know of, and tells of panels on the surface.
+pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build);
 void pvtBuild_Free(pvtContext* context, pvtBuild* build);
 
 #endif

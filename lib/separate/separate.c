@@ -7,7 +7,6 @@
 #include "base/context.h"
 #include "crew.h"
 #include "groups.h"
-#include "occluder/ceiling.h"
 #include "occluder/steps.h"
 
 #include <math.h>
@@ -17,7 +16,6 @@
 #include <string.h>
 
 enum {
-    MEASURE_SIZE = 64,
     FEW = 8,
     AN_INSTANCE = 16,
     LEAST_BUDGET = 64,
@@ -106,12 +104,13 @@ static pvtStatus MeasureSolid(pvtContext* context, const pvtBuildOptions* option
         status = pvtFillStep(context, &build);
     }
     if (status == PVT_OK) {
+        status = pvtSheetStep(context, &build);
+    }
+    if (status == PVT_OK) {
         status = pvtMakeViews(context, &views, &build.views);
     }
     if (status == PVT_OK) {
-        const pvtMeasureGridOptions grid = {&build.views, &build.bounds, MEASURE_SIZE};
-        status = pvtMeasureGrid(context, &grid, &build.allowed, &build.cells,
-                                &build.stats.measureOfSolid);
+        status = pvtMeasureCeiling(context, &build);
     }
     pvtBuild_Free(context, &build);
     *stats = build.stats;

@@ -50,13 +50,14 @@ static bool IsZero(const void* bytes, size_t count)
 // Runs something whole on a mesh; `*empty` tells whether the output was left empty.
 typedef pvtStatus RunFcn(pvtContext* context, const pvtMesh* mesh, bool* empty);
 
-static pvtStatus RunBuild(pvtContext* context, const pvtMesh* mesh, pvtMethod method, bool* empty)
+static pvtStatus RunBuildWithin(pvtContext* context, const pvtMesh* mesh, pvtMethod method,
+                                double tolerance, bool* empty)
 {
     pvtBuildOptions options = pvtDefaultBuildOptions();
     options.budget = 6;
     options.resolution = 8;
-    options.smallestHole = (pvtLength){2.0, true};
-    options.tolerance = (pvtLength){1.0, true};
+    options.smallestHole = (pvtLength){2.0 * tolerance, true};
+    options.tolerance = (pvtLength){tolerance, true};
     options.method = method;
     options.views.count = 1;
     pvtOccluder occluder;
@@ -67,9 +68,19 @@ static pvtStatus RunBuild(pvtContext* context, const pvtMesh* mesh, pvtMethod me
     return status;
 }
 
+static pvtStatus RunBuild(pvtContext* context, const pvtMesh* mesh, pvtMethod method, bool* empty)
+{
+    return RunBuildWithin(context, mesh, method, 1.0, empty);
+}
+
 static pvtStatus RunPlanarBuild(pvtContext* context, const pvtMesh* mesh, bool* empty)
 {
     return RunBuild(context, mesh, PVT_METHOD_PLANAR, empty);
+}
+
+static pvtStatus RunSheetBuild(pvtContext* context, const pvtMesh* mesh, bool* empty)
+{
+    return RunBuildWithin(context, mesh, PVT_METHOD_PLANAR, 0.0, empty);
 }
 
 static pvtStatus RunPaperBuild(pvtContext* context, const pvtMesh* mesh, bool* empty)
@@ -268,11 +279,11 @@ static size_t RunOnce(RunFcn* run, const pvtMesh* mesh, int threads, size_t fail
 }
 
 // Refuses every request when `most` is 0, else about that many, spread over all.
-static void CheckRequests(RunFcn* run, int threads, size_t most)
+static void CheckRequestsOn(const char* recipe, RunFcn* run, int threads, size_t most)
 {
     pvtContext* context = CreateTestContext(1);
     pvtMesh mesh;
-    CHECK_OK(context, MakeRecipeMesh(context, "boulder", &mesh));
+    CHECK_OK(context, MakeRecipeMesh(context, recipe, &mesh));
     const size_t requests = RunOnce(run, &mesh, threads, 0);
     assert_true(requests > 3);
     const size_t step = most == 0 ? 1 : 1 + requests / most;
@@ -282,6 +293,11 @@ static void CheckRequests(RunFcn* run, int threads, size_t most)
     print_message("%zu requests, one of every %zu refused\n", requests, step);
     pvtMesh_Free(context, &mesh);
     DestroyTestContext(context);
+}
+
+static void CheckRequests(RunFcn* run, int threads, size_t most)
+{
+    CheckRequestsOn("boulder", run, threads, most);
 }
 
 static void stages_survive_every_refused_request(void** state)
@@ -306,6 +322,12 @@ static void a_planar_build_survives_refused_requests(void** state)
 {
     (void)state;
     CheckRequests(RunPlanarBuild, 1, 60);
+}
+
+static void a_build_of_sheets_survives_refused_requests(void** state)
+{
+    (void)state;
+    CheckRequestsOn("hangar", RunSheetBuild, 1, 60);
 }
 
 static void a_paper_build_survives_refused_requests(void** state)
@@ -340,6 +362,7 @@ int main(void)
         cmocka_unit_test(stages_survive_every_refused_request),
         cmocka_unit_test(an_evaluation_survives_every_refused_request),
         cmocka_unit_test(a_planar_build_survives_refused_requests),
+        cmocka_unit_test(a_build_of_sheets_survives_refused_requests),
         cmocka_unit_test(a_paper_build_survives_refused_requests),
         cmocka_unit_test(a_build_on_four_threads_survives_refused_requests),
     };

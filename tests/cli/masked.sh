@@ -10,10 +10,10 @@ check() {
     holds "masked.mjs $*" node "$here/masked.mjs" "$@"
 }
 
-# The fence's cards are closed all around: as walls they have an inside.
+# The fence's cards are closed all around: as walls they have an inside. Where its wires are wide
+# enough for panels, these lie on them.
 for resolution in 64 256; do
     expect 0 "" generate "$models/fence.glb" -o fence.glb "${fast[@]}" --resolution "$resolution"
-    check within fence.glb -0.75 0 -3 0.75 1 -2
     expect 0 "" evaluate "$models/fence.glb" fence.glb "${quick[@]}" --json fence.json
     check score fence.json uniform.precision 1 1
     check score fence.json small.precision 1 1

@@ -5,7 +5,7 @@ const stats = JSON.parse(readFileSync(process.argv[2], "utf8"));
 const fields = {
     version: "string", input: "string", triangles_in: "count", triangles: "count",
     polygons: "count", resolution: "count", voxel_size: "number", error_bound: "number",
-    inside_fraction: "number", measure: "number", measure_of_solid: "number",
+    surface_polygons: "count", surface_deviation: "number", inside_fraction: "number", measure: "number", measure_of_solid: "number",
     candidates: "count", outside: "count", seconds: "object", peak_bytes: "count",
     options: "object", warnings: "array",
 };

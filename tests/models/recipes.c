@@ -252,6 +252,44 @@ static void MakeHouse(Model* model)
     AddBox(AddShape(model, "chimney", (Point){2, 5.5, -1}), chimney);
 }
 
+// A hangar of 8 m by 12 m, all of it without thickness: a door of 5 m in front, a window in the
+// back, a hole in the roof's right half, no floor.
+static void MakeHangar(Model* model)
+{
+    const double halfX = 4.0, halfZ = 6.0, ridge = 5.0;
+    const Wall front = {{0, 0, halfZ}, {1, 0, 0}, {0, 0, 1}, halfX};
+    const Wall back = {{0, 0, -halfZ}, {-1, 0, 0}, {0, 0, -1}, halfX};
+    const Wall left = {{-halfX, 0, 0}, {0, 0, 1}, {-1, 0, 0}, halfZ};
+    const Wall right = {{halfX, 0, 0}, {0, 0, -1}, {1, 0, 0}, halfZ};
+    const Opening door = {-2.5, 2.5, 0, 2.5};
+    const Opening window = {-1.0, 1.0, 1.0, 2.0};
+    Shape* walls = AddShape(model, "walls", (Point){0, 0, 0});
+    AddWallSide(walls, &front, &door, 1, 0.0);
+    AddWallSide(walls, &back, &window, 1, 0.0);
+    AddWallSide(walls, &left, NULL, 0, 0.0);
+    AddWallSide(walls, &right, NULL, 0, 0.0);
+    Shape* roof = AddShape(model, "roof", (Point){0, 0, 0});
+    for (int side = -1; side <= 1; side += 2) {
+        const uint32_t a = AddPoint(roof, (Point){-halfX * side, WALL_HEIGHT, halfZ * side});
+        const uint32_t b = AddPoint(roof, (Point){halfX * side, WALL_HEIGHT, halfZ * side});
+        const uint32_t c = AddPoint(roof, (Point){0, ridge, halfZ * side});
+        AddTriangle(roof, a, b, c);
+    }
+    AddPanel(roof, (Point){-halfX, WALL_HEIGHT, -halfZ}, (Point){-halfX, WALL_HEIGHT, halfZ},
+             (Point){0, ridge, halfZ}, (Point){0, ridge, -halfZ});
+    // Strips along x around the hole, which spans z from −1 to 1 and half of the slope.
+    const double strips[4][4] = {
+        {1, halfZ, 0, 1}, {-halfZ, -1, 0, 1}, {-1, 1, 0, 0.25}, {-1, 1, 0.75, 1}};
+    for (int i = 0; i < 4; ++i) {
+        const double* s = strips[i];
+        const double low = halfX * (1 - s[2]), high = halfX * (1 - s[3]);
+        const double lowY = WALL_HEIGHT + (ridge - WALL_HEIGHT) * s[2];
+        const double highY = WALL_HEIGHT + (ridge - WALL_HEIGHT) * s[3];
+        AddPanel(roof, (Point){low, lowY, s[1]}, (Point){low, lowY, s[0]},
+                 (Point){high, highY, s[0]}, (Point){high, highY, s[1]});
+    }
+}
+
 typedef struct Branch {
     Point from, along; // `along` has the branch's length
     double radius;
@@ -340,7 +378,10 @@ static void MakeYard(Model* model)
                               {-1, 2, 0.5}, {-1, 2.25, -0.5}, {0, 1, -0.5},   {0, 1, 0.5}};
     AddBox(wedge, slanted);
     Shape* banner = AddShape(model, "banner", (Point){0, 0, 0});
-    AddPanel(banner, (Point){0, 0, 0}, (Point){2, 0, 0}, (Point){2, 1, 0}, (Point){0, 1, 0});
+    // So narrow that no panel fits on it.
+    const double height = 1.0 / 512.0;
+    AddPanel(banner, (Point){0, 0, 0}, (Point){2, 0, 0}, (Point){2, height, 0},
+             (Point){0, height, 0});
     const Node nodes[] = {
         {"tower", 0, {1, 1, 1}, 0, {0, 0, 0}},
         {"tower", 0, {1, 1, 1}, 0, {6, 0, -2}},
@@ -370,4 +411,5 @@ const Recipe RECIPES[RECIPE_COUNT] = {
     {"house", MakeHouse},     {"sheet", MakeSheet},
     {"tree", MakeTree},       {"yard", MakeYard},
     {"fence", MakeFence},     {"leafy_tree", MakeLeafyTree},
+    {"hangar", MakeHangar},
 };

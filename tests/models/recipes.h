@@ -10,7 +10,7 @@ typedef struct Recipe {
     void (*make)(Model* model); // adds shapes to an empty model
 } Recipe;
 
-enum { RECIPE_COUNT = 8 };
+enum { RECIPE_COUNT = 9 };
 extern const Recipe RECIPES[RECIPE_COUNT];
 
 /// Null when there is none.

@@ -102,6 +102,18 @@ PVT_API pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowe
                                    const pvtCellGrid* cells, const pvtMesh* occluder,
                                    uint64_t* outside);
 
+/// How close to a surface something lies on it.
+typedef struct pvtSurfaceReach {
+    double distance; ///< [wu] from the occluder's plane, along that axis
+    double slack;    ///< [wu] what is nowhere wider than this is not looked at
+} pvtSurfaceReach;
+
+/// What is left of the occluder's triangles without those parts that `surface` covers, seen along
+/// the axis that their normal is nearest to, with what of it is within reach->distance: no
+/// triangles when the occluder lies on the surface. By code that the optimizer does not share.
+PVT_API pvtStatus pvtTakeOffSurface(pvtContext* context, const pvtSurfaceReach* reach,
+                                    const pvtMesh* surface, const pvtMesh* occluder, pvtMesh* rest);
+
 /// How long the refinement may go on: it tries 1,500, 20,000 or 200,000 changes.
 typedef enum pvtEffort { PVT_EFFORT_FAST, PVT_EFFORT_DEFAULT, PVT_EFFORT_BEST } pvtEffort;
 
@@ -130,12 +142,15 @@ typedef struct pvtBuildOptions {
 
 /// What a build can tell about itself.
 typedef struct pvtBuildStats {
-    int resolution;        ///< [vx] along the longest side, as used
-    double voxelSize;      ///< [wu]
-    double tolerance;      ///< [wu]
-    double smallestHole;   ///< [wu]
-    double errorBound;     ///< [wu] √3 voxels + max(tolerance, smallestHole / 2): no ray that the
-                           ///< occluder blocks passes the original farther away than this
+    int resolution;      ///< [vx] along the longest side, as used
+    double voxelSize;    ///< [wu]
+    double tolerance;    ///< [wu]
+    double smallestHole; ///< [wu]
+    double errorBound;   ///< [wu] √3 voxels + max(tolerance, smallestHole / 2), or `deviation` if
+                         ///< that is more: no ray that the occluder blocks passes the original
+                         ///< farther away than this
+    int surfacePanels;   ///< polygons that lie on the surface itself: there is no inside
+    double deviation;    ///< [wu] how far these may lie from it; 0 when there are none
     double insideFraction; ///< of the bounds that is strictly inside
     double measure;        ///< [wu³] of the occluder
     double measureOfSolid; ///< [wu³] of everything that may be covered: the ceiling

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Which cells of a plane the surface near it covers.
+#ifndef PVT_OCCLUDER_SHEET_COVER_H
+#define PVT_OCCLUDER_SHEET_COVER_H
+
+#include "sheet_soup.h"
+
+/// Clears `cells`, which spans the whole plane, and sets those that are wholly covered, seen along
+/// the plane's axis, by parts of triangles that lie within `distance` [vx] of the plane; gaps that
+/// are nowhere wider than 1/256 voxel count as covered.
+pvtStatus pvtCoverPlane(pvtContext* context, const pvtSheetSoup* soup, const pvtPlane* plane,
+                        double distance, int cellsPerVoxel, pvtBitmap* cells);
+
+#endif

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// Sheets within a build: how far the surface may lie from them, what they add, and what is said
+// about them.
+#include "steps.h"
+
+#include "base/context.h"
+#include "base/vector.h"
+#include "ceiling.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MIN_SHEETS = 128, MAX_SHEETS = 512, FEW_VIEWS = 12 };
+
+// [vx] How far the surface may lie from a panel on it. Up to √3 the bound of the strict interior
+// holds for sheets as well; what is beyond is only for meshes without any.
+static const double DEVIATIONS[] = {0.25, 1.0, 2.0, 4.0};
+static const double BOUND = 1.7320508075688772;
+// A strict interior that hides less than this part of what the mesh hides is as good as none.
+static const double NEXT_TO_NOTHING = 0.05;
+// Sheets that take this part of the surface need not lie any farther off.
+static const double ENOUGH = 0.5;
+
+bool pvtMayUseSheets(const pvtBuild* build)
+{
+    return build->options->method == PVT_METHOD_PLANAR && build->stats.tolerance == 0.0;
+}
+
+static pvtStatus FindSheets(pvtContext* context, pvtBuild* build, double deviation)
+{
+    const int wanted = 2 * build->options->budget;
+    const pvtSheetOptions options = {
+        .deviation = deviation,
+        .maxCount = wanted < MIN_SHEETS   ? MIN_SHEETS
+                    : wanted > MAX_SHEETS ? MAX_SHEETS
+                                          : wanted,
+        .seed = build->options->seed,
+        .allowed = &build->allowed,
+    };
+    pvtSheetSet_Free(context, &build->sheets);
+    build->deviation = deviation;
+    return pvtFindSheets(context, &options, build->mesh, &build->allowed.frame, &build->sheets);
+}
+
+// Measures grids over a few views.
+typedef struct Gauge {
+    pvtViewSet views;
+    pvtBox3 bounds;
+} Gauge;
+
+static pvtStatus CreateGauge(pvtContext* context, const pvtBuild* build, Gauge* gauge)
+{
+    pvtViewOptions options = build->options->views;
+    options.up = (int)build->options->up;
+    options.count = options.count < FEW_VIEWS ? options.count : FEW_VIEWS;
+    gauge->bounds = pvtMesh_GetBounds(build->mesh);
+    return pvtMakeViews(context, &options, &gauge->views);
+}
+
+static pvtStatus MeasureWith(pvtContext* context, const Gauge* gauge, const pvtBitGrid* grid,
+                             const pvtCellGrid* cells, double* measure)
+{
+    const pvtMeasureGridOptions options = {&gauge->views, &gauge->bounds, PVT_MEASURE_SIZE};
+    return pvtMeasureGrid(context, &options, grid, cells, measure);
+}
+
+static int CompareFalling(const void* left, const void* right)
+{
+    const double a = *(const double*)left;
+    const double b = *(const double*)right;
+    return (a < b) - (a > b);
+}
+
+// The part of the surface that as many sheets as the budget has quadrilaterals for would take.
+static pvtStatus GetShare(pvtContext* context, const pvtBuild* build, double* share)
+{
+    const pvtSheetSet* set = &build->sheets;
+    double* areas = pvtAllocate(context, set->count, sizeof *areas);
+    if (areas == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    for (size_t i = 0; i < set->count; ++i) {
+        areas[i] = set->sheets[i].gain;
+    }
+    if (set->count > 0) {
+        qsort(areas, set->count, sizeof *areas, CompareFalling);
+    }
+    const size_t panels = (size_t)build->options->budget / 2 + 1;
+    *share = 0.0;
+    for (size_t i = 0; i < set->count && i < panels; ++i) {
+        *share += areas[i] / set->bare;
+    }
+    pvtRelease(context, areas);
+    return PVT_OK;
+}
+
+// How far the surface may stray from sheets at most.
+static pvtStatus GetMostDeviation(pvtContext* context, const pvtBuild* build, double* most)
+{
+    Gauge gauge = {0};
+    double whole = 0.0;
+    double strict = 0.0;
+    pvtStatus status = CreateGauge(context, build, &gauge);
+    if (status == PVT_OK) {
+        status = MeasureWith(context, &gauge, &build->solid.inside, NULL, &whole);
+    }
+    if (status == PVT_OK) {
+        status = MeasureWith(context, &gauge, &build->allowed, &build->cells, &strict);
+    }
+    pvtViewSet_Free(context, &gauge.views);
+    *most = strict >= NEXT_TO_NOTHING * whole             ? DEVIATIONS[0]
+            : strict > 0.0 || build->options->error > 0.0 ? BOUND
+                                                          : HUGE_VAL;
+    return status;
+}
+
+// Sheets may reach into voxels that they do not pass over wholly.
+static void WidenBySheets(pvtBuild* build)
+{
+    pvtWidenBounds(&build->hiding, &build->bounds);
+    const double h = build->stats.voxelSize;
+    pvtBox3* box = &build->bounds;
+    if (box->lower.x <= box->upper.x) {
+        box->lower = pvtSub(box->lower, (pvtVec3){h, h, h});
+        box->upper = pvtAdd(box->upper, (pvtVec3){h, h, h});
+    }
+}
+
+pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build)
+{
+    if (!pvtMayUseSheets(build)) {
+        return PVT_OK;
+    }
+    double most = 0.0;
+    double share = 0.0;
+    pvtStatus status = FindSheets(context, build, DEVIATIONS[0]);
+    if (status == PVT_OK && build->sheets.bare > 0.0) {
+        status = GetShare(context, build, &share);
+    }
+    if (status == PVT_OK && build->sheets.bare > 0.0 && share < ENOUGH) {
+        status = GetMostDeviation(context, build, &most);
+    }
+    for (size_t i = 1; i < sizeof DEVIATIONS / sizeof *DEVIATIONS && status == PVT_OK &&
+                       share < ENOUGH && DEVIATIONS[i] <= most;
+         ++i) {
+        status = FindSheets(context, build, DEVIATIONS[i]);
+        if (status == PVT_OK) {
+            status = GetShare(context, build, &share);
+        }
+    }
+    if (status == PVT_OK && build->sheets.count > 0) {
+        status = pvtMarkSheets(context, &build->sheets, &build->allowed, &build->hiding);
+        WidenBySheets(build);
+    }
+    if (status == PVT_OK && build->bounds.lower.x > build->bounds.upper.x) {
+        status = pvtFailNothingInside(context, build);
+    }
+    return status;
+}
+
+pvtStatus pvtAddSheets(pvtContext* context, const pvtCandidateOptions* options, pvtBuild* build)
+{
+    return pvtAddSheetCandidates(context, options, &build->volume, &build->sheets,
+                                 &build->candidates);
+}
+
+pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build)
+{
+    const bool hasSheets = build->hiding.words != NULL;
+    const pvtMeasureGridOptions options = {&build->views, &build->bounds, PVT_MEASURE_SIZE};
+    return pvtMeasureGrid(context, &options, hasSheets ? &build->hiding : &build->allowed,
+                          &build->cells, &build->stats.measureOfSolid);
+}
+
+// What the promise says of panels on the surface: nothing is left of them without it.
+static pvtStatus CheckPanels(pvtContext* context, pvtBuild* build)
+{
+    pvtBuildStats* stats = &build->stats;
+    const pvtSurfaceReach reach = {.distance = stats->deviation, .slack = stats->voxelSize / 256.0};
+    pvtMesh rest;
+    pvtStatus status =
+        pvtTakeOffSurface(context, &reach, build->mesh, &build->occluder.mesh, &rest);
+    if (status == PVT_OK) {
+        status = pvtCheckOccluder(context, &build->allowed, &build->cells, &rest, &stats->outside);
+        pvtMesh_Free(context, &rest);
+    }
+    return status;
+}
+
+pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build)
+{
+    pvtBuildStats* stats = &build->stats;
+    for (size_t p = 0; p < build->occluder.loops.loopCount; ++p) {
+        stats->surfacePanels +=
+            pvtSheetSet_Find(&build->sheets, &build->occluder.planes[p]) != NULL ? 1 : 0;
+    }
+    if (stats->surfacePanels == 0) {
+        return PVT_OK;
+    }
+    stats->deviation = build->deviation * stats->voxelSize;
+    stats->errorBound = fmax(stats->errorBound, stats->deviation);
+    const pvtStatus status = stats->outside > 0 ? CheckPanels(context, build) : PVT_OK;
+    if (status == PVT_OK && build->deviation > BOUND) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the mesh has no inside at %d voxels: all panels lie on its surface, which is not "
+               "flat, and stray from it by up to %.3g; a higher --resolution brings them closer",
+               stats->resolution, stats->deviation);
+    } else if (status == PVT_OK && build->solid.strictCount == 0) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the mesh has no inside at %d voxels: all panels lie on its surface, within %.3g",
+               stats->resolution, stats->deviation);
+    }
+    return status;
+}
