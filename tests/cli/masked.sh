@@ -31,12 +31,12 @@ expect 0 "1 primitives with a masked material were left out" \
     evaluate "$models/fence.glb" wall.glb "${quick[@]}" --masked skip --json wall.json
 check score wall.json original.triangles 20 20
 
-# A crown that is closed but for its texture: the occluder is the trunk's.
+# A crown that is closed but for its texture: the occluder is the trunk's, and may lie on what of the
+# leaves is opaque.
 expect 0 "" generate "$models/leafy_tree.glb" -o tree.glb "${fast[@]}" --resolution 128 --threads 1
 cp tree.glb one.glb
 expect 0 "" generate "$models/leafy_tree.glb" -o tree.glb "${fast[@]}" --resolution 128 --threads 3
 holds "the bytes do not depend on the threads" cmp tree.glb one.glb
-check within tree.glb -0.3 0 -0.3 0.3 3 0.3
 expect 0 "" evaluate "$models/leafy_tree.glb" tree.glb "${quick[@]}" --json tree.json
 check score tree.json uniform.precision 0.9999 1
 check score tree.json small.precision 0.9999 1
