@@ -46,11 +46,19 @@ static pvtStatus FindBlocked(pvtContext* context, const pvtSolidOptions* options
     return status;
 }
 
+// [wu] Of the ball. Between the centres of touched voxels an opening is up to a voxel wider than it
+// is: the ball is so much larger than the hole, and all openings narrower than that are closed.
+static double GetRadius(const pvtSolidOptions* options, const pvtGridFrame* frame)
+{
+    return options->smallestHole > 0.0 ? 0.5 * (options->smallestHole + frame->voxelSize) : 0.0;
+}
+
 // For a surface with margin enough around it.
 static pvtStatus FloodPadded(pvtContext* context, const pvtSolidOptions* options,
                              const pvtBitGrid* surface, int groundLayer, pvtBitGrid* inside)
 {
-    const uint32_t squaredReach = pvtGetSquaredReach(&surface->frame, 0.5 * options->smallestHole);
+    const uint32_t squaredReach =
+        pvtGetSquaredReach(&surface->frame, GetRadius(options, &surface->frame));
     const bool needsBlocked = squaredReach > 0 || options->ground;
     pvtBitGrid blocked = {0};
     pvtBitGrid reached = {0};
@@ -91,7 +99,7 @@ pvtStatus pvtFloodOutside(pvtContext* context, const pvtSolidOptions* options,
     if (!pvtBitGrid_FindBounds(surface, &box)) {
         return pvtCreateBitGrid(context, &surface->frame, inside);
     }
-    const double radius = 0.5 * options->smallestHole / surface->frame.voxelSize;
+    const double radius = GetRadius(options, &surface->frame) / surface->frame.voxelSize;
     int offset[3];
     int size[3];
     if (3.0 * radius > PVT_MAX_GRID_SIDE) {
