@@ -54,4 +54,9 @@ pvtStatus pvtAddSheetCandidates(pvtContext* context, const pvtCandidateOptions* 
                                 const pvtSliceVolume* volume, const pvtSheetSet* sheets,
                                 pvtCandidateSet* candidates);
 
+/// Moves the corners of polygons on sheets outwards, to where the surface within `deviation` [vx]
+/// ends. Meshes of very many triangles stay as they are: their sheets are pieces of what is curved.
+pvtStatus pvtGrowSheetPanels(pvtContext* context, const pvtSheetSet* sheets, double deviation,
+                             const pvtMesh* mesh, pvtOccluder* occluder);
+
 #endif

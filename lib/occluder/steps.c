@@ -385,7 +385,7 @@ pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
     return status;
 }
 
-pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
+static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
 {
     if (IsPaper(build) || build->options->budget > MAX_REFINED) {
         return PVT_OK;
@@ -403,6 +403,16 @@ pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
                                       .deadline = deadline};
     return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
                              &build->occluder);
+}
+
+pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
+{
+    pvtStatus status = RunRefinement(context, build);
+    if (status == PVT_OK) {
+        status = pvtGrowSheetPanels(context, &build->sheets, build->deviation, build->mesh,
+                                    &build->occluder);
+    }
+    return status;
 }
 
 // A strict interior may be a small part of what the mesh hides: a chair's legs are all surface.

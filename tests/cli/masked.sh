@@ -17,7 +17,8 @@ for resolution in 64 256; do
     expect 0 "" evaluate "$models/fence.glb" fence.glb "${quick[@]}" --json fence.json
     check score fence.json uniform.precision 1 1
     check score fence.json small.precision 1 1
-    check score fence.json over_area 0 0
+    # A panel ends where a wire does: corners that are rounded for the screen may cost a pixel.
+    check score fence.json over_area 0 0.0001
     check score fence.json uniform.recall 0.4 1
 done
 expect 0 "" generate "$models/fence.glb" -o wall.glb "${fast[@]}" --masked opaque
