@@ -2,6 +2,7 @@
 // Whole builds: each stage of ours, and all of it against the paper's way.
 #include "speed.h"
 
+#include <paravent/evaluate.h>
 #include <paravent/gl.h>
 #include <paravent/io.h>
 #include <string.h>
@@ -10,10 +11,12 @@ typedef struct TimedBuild {
     const char* path;
     pvtBuildOptions options;
     bool isOnOsmesa;
+    bool isJudged; // its recall is wanted as well
     // What comes out. The status is of the build alone: OK, nothing inside, or unsupported.
     pvtStatus status;
     pvtBuildStats stats;
     size_t trianglesIn, trianglesOut, peakBytes;
+    double recall; // of uniform quads
 } TimedBuild;
 
 static pvtStatus CreateSlicer(pvtContext* context, void* user, const pvtGridFrame* frame,
@@ -28,16 +31,33 @@ static void ReleaseSlicer(pvtContext* context, void* user, pvtSlicer* slicer)
     pvtReleaseStencilSlicer(context, slicer);
 }
 
+static pvtStatus Judge(pvtRun* run, TimedBuild* build, const pvtMesh* original,
+                       const pvtMesh* occluder)
+{
+    const pvtEvaluateOptions options = pvtDefaultEvaluateOptions();
+    pvtEvaluation evaluation;
+    const pvtStatus status =
+        pvtEvaluateOccluders(run->context, &options, original, occluder, 1, &evaluation);
+    if (status == PVT_OK) {
+        build->recall = evaluation.occluders[0].uniform.recall;
+        pvtEvaluation_Free(run->context, &evaluation);
+    }
+    return status;
+}
+
 static pvtStatus Build(pvtRun* run, TimedBuild* build, const pvtMesh* mesh)
 {
     pvtOccluder occluder;
-    const pvtStatus status =
+    pvtStatus status =
         pvtBuildOccluder(run->context, &build->options, mesh, &occluder, &build->stats);
     build->status = status;
     build->trianglesIn = mesh->triangleCount;
     build->peakBytes = pvtContext_GetPeakBytes(run->context);
     if (status == PVT_OK) {
         build->trianglesOut = occluder.mesh.triangleCount;
+        if (build->isJudged) {
+            status = Judge(run, build, mesh, &occluder.mesh);
+        }
         pvtOccluder_Free(run->context, &occluder);
     }
     return status == PVT_NOTHING_INSIDE ? PVT_OK : status;
@@ -148,7 +168,8 @@ static int RunWays(const pvtSpeedLine* line, const char* path, TimedBuild builds
             (TimedBuild){.path = path,
                          .options = pvtGetBenchBuildOptions(
                              &line->bench, i == PAPER ? PVT_METHOD_PAPER : PVT_METHOD_PLANAR),
-                         .isOnOsmesa = i == PAPER};
+                         .isOnOsmesa = i == PAPER,
+                         .isJudged = true};
         builds[i].options.resolution = line->paperResolution;
         builds[i].options.effort = i == FAST ? PVT_EFFORT_FAST : PVT_EFFORT_DEFAULT;
         exitCode = RunBuild(line, &builds[i]);
@@ -158,26 +179,32 @@ static int RunWays(const pvtSpeedLine* line, const char* path, TimedBuild builds
 
 static void PrintWays(const char* path, const TimedBuild builds[WAYS])
 {
-    const double fast = builds[FAST].stats.seconds.total;
-    const double usual = builds[DEFAULT].stats.seconds.total;
     const double paper = builds[PAPER].stats.seconds.total;
-    printf("%-32s %9.3f %9.3f", pvtGetFileName(path), fast, usual);
-    if (builds[PAPER].status == PVT_UNSUPPORTED) {
-        puts("  not here");
-    } else if (builds[DEFAULT].status != PVT_OK || builds[PAPER].status != PVT_OK) {
-        printf(" %9.3f  nothing inside\n", paper);
-    } else {
-        printf(" %9.3f %9.2f %9.2f\n", paper, paper / fast, paper / usual);
+    printf("%-32s", pvtGetFileName(path));
+    for (int i = 0; i < WAYS; ++i) {
+        if (builds[i].status == PVT_OK) {
+            printf(" %8.3f %5.1f %%", builds[i].stats.seconds.total, 100.0 * builds[i].recall);
+        } else {
+            printf(" %16s", builds[i].status == PVT_UNSUPPORTED ? "not here" : "nothing inside");
+        }
     }
+    for (int i = 0; i < PAPER; ++i) {
+        if (builds[i].status == PVT_OK && builds[PAPER].status == PVT_OK) {
+            printf(" %9.2f", paper / builds[i].stats.seconds.total);
+        } else {
+            printf(" %9s", "-");
+        }
+    }
+    putchar('\n');
     fflush(stdout);
 }
 
 int pvtPrintPaperSpeeds(const pvtSpeedLine* line, const char* const* paths, int count)
 {
     printf("\nagainst the paper's way with slices by OSMesa; resolution %d, budget %d; total "
-           "seconds\n",
+           "seconds, and recall\n",
            line->paperResolution, line->bench.budget);
-    printf("%-32s %9s %9s %9s %9s %9s\n", "model", "fast", "default", "paper's", "p/fast",
+    printf("%-32s %16s %16s %16s %9s %9s\n", "model", "fast", "default", "paper's", "p/fast",
            "p/default");
     int exitCode = PVT_EXIT_DONE;
     for (int i = 0; i < count && exitCode == PVT_EXIT_DONE; ++i) {

@@ -20,6 +20,7 @@ enum {
 
 static const double SQRT3 = 1.7320508075688772;
 static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
+static const double SAFE_SHARE = 0.8; // of the voxels: with more, that of the measure is not small
 
 pvtBuildOptions pvtDefaultBuildOptions(void)
 {
@@ -421,7 +422,10 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
 {
     pvtBox3 bounds;
     double hidden = 0.0;
-    if (build->stats.tolerance > 0.0 || !FindBounds(&build->solid.inside, &bounds)) {
+    const double share =
+        (double)pvtBitGrid_Count(&build->allowed) / (double)build->solid.insideCount;
+    if (build->stats.tolerance > 0.0 || share > SAFE_SHARE ||
+        !FindBounds(&build->solid.inside, &bounds)) {
         return PVT_OK;
     }
     const pvtMeasureGridOptions options = {&build->views, &bounds, PVT_MEASURE_SIZE};
