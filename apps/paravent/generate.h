@@ -64,7 +64,7 @@ typedef struct pvtGenerated {
 } pvtGenerated;
 
 /// What the node of an occluder tells about it.
-enum { PVT_OCCLUDER_EXTRA_COUNT = 13 };
+enum { PVT_OCCLUDER_EXTRA_COUNT = 14 };
 void pvtListExtras(const pvtGenerateOptions* options, const pvtBuildStats* stats, int budget,
                    pvtExtra extras[PVT_OCCLUDER_EXTRA_COUNT]);
 

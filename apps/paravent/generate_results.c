@@ -27,6 +27,7 @@ void pvtListExtras(const pvtGenerateOptions* options, const pvtBuildStats* stats
         {"budget", budget, NULL},
         {"measure", stats->measure, NULL},
         {"measure_of_solid", stats->measureOfSolid, NULL},
+        {"outside", (double)stats->outside, NULL},
         {"method", 0.0, options->method == PVT_METHOD_PAPER ? "paper" : "planar"},
         {"effort", 0.0, efforts[options->effort]},
         {"seed", (double)options->seed, NULL},

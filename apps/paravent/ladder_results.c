@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { NAME_SIZE = 256, EXTRA_COUNT = 15 };
+enum { NAME_SIZE = 256, EXTRA_COUNT = 16 };
 
 static const char* const efforts[] = {"fast", "default", "best"};
 
@@ -40,6 +40,7 @@ static void ListExtras(const pvtLadderLine* options, const pvtLevel* level, size
         {"budget", level->budget, NULL},
         {"measure", stats->measure, NULL},
         {"measure_of_solid", stats->measureOfSolid, NULL},
+        {"outside", (double)stats->outside, NULL},
         {"pixel_error", options->pixelError, NULL},
         {"method", 0.0, options->generate.method == PVT_METHOD_PAPER ? "paper" : "planar"},
         {"effort", 0.0, efforts[options->generate.effort]},

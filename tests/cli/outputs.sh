@@ -86,6 +86,7 @@ holds "a closed pipe is an error or goes unseen, never a signal: $code" test "$c
 # The names of nodes, and a name that is not UTF-8.
 expect 0 "" generate in.glb "${quick[@]}" -o out.gltf
 holds "the node is named after the input" grep -q '"in_occluder"' out.gltf
+holds "the check of the result is told with it" grep -qE "\"outside\": *0(\\.0)?," out.gltf
 expect 0 "" generate in.glb "${quick[@]}" -o out.gltf --convention godot
 holds "Godot's suffix" grep -q '"in-occonly"' out.gltf
 odd=$'\xff\xe4odd"name.v2.glb'
