@@ -545,7 +545,7 @@ pvtStatus pvtTakeOffSurface(pvtContext* context, const pvtSurfaceReach* reach,
     if (task.chunks == NULL || task.rests == NULL || task.statuses == NULL) {
         status = pvtContext_GetStatus(context);
     }
-    for (size_t c = 0; c < task.chunkCount && status == PVT_OK; ++c) {
+    for (size_t c = 0; c < task.chunkCount && status == PVT_OK && task.chunks != NULL; ++c) {
         const size_t end = (c + 1) * CHUNK;
         task.chunks[c] =
             GetBox(surface, c * CHUNK, end < surface->triangleCount ? end : surface->triangleCount);

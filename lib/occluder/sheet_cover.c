@@ -19,6 +19,9 @@ enum { MAX_POINTS = 12, MAX_PIECES = 48, ROWS_A_CHECK = 1024 };
 // triangles that are rounded, nowhere wider than 1/64 of it.
 static const double GAP = 1.0 / 8192.0;
 
+// [vx²] What a triangle may have uncovered: less than what the check after the build looks at.
+static const double CRACK = 4e-6;
+
 // [cells] A point this close to an edge counts as inside, where only cells that fail are sought.
 static const double NEAR = 0.01;
 
@@ -33,7 +36,7 @@ typedef struct Shape {
 } Shape;
 
 // What is near the plane of a triangle, in the same way.
-typedef struct Clipped {
+typedef struct pvtClipped {
     Point points[5];
     int count;
 } Clipped;
@@ -422,4 +425,72 @@ pvtStatus pvtCoverPlane(pvtContext* context, const pvtSheetSoup* soup, const pvt
     pvtRelease(context, cover.shapes);
     pvtRelease(context, cover.parts);
     return status;
+}
+
+pvtStatus pvtCollectPlaneShapes(pvtContext* context, const pvtSheetSoup* soup,
+                                const pvtPlane* plane, double distance, pvtPlaneShapes* shapes)
+{
+    Cover cover = {
+        .context = context, .soup = soup, .plane = plane, .reach = distance, .scale = 1.0};
+    const pvtStatus status = CollectShapes(&cover, distance);
+    *shapes = (pvtPlaneShapes){cover.shapes, cover.shapeCount};
+    if (status != PVT_OK) {
+        pvtPlaneShapes_Free(context, shapes);
+    }
+    return status;
+}
+
+void pvtPlaneShapes_Free(pvtContext* context, pvtPlaneShapes* shapes)
+{
+    pvtRelease(context, shapes->shapes);
+    *shapes = (pvtPlaneShapes){0};
+}
+
+// Whether their boxes are apart.
+static bool IsClear(const Clipped* shape, const Shape* triangle)
+{
+    Span x = {HUGE_VAL, -HUGE_VAL}, y = x, u = x, v = x;
+    for (int i = 0; i < shape->count; ++i) {
+        Widen(&x, shape->points[i].x);
+        Widen(&y, shape->points[i].y);
+    }
+    for (int i = 0; i < triangle->count; ++i) {
+        Widen(&u, triangle->points[i].x);
+        Widen(&v, triangle->points[i].y);
+    }
+    return x.low >= u.high || x.high <= u.low || y.low >= v.high || y.high <= v.low;
+}
+
+bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle[3])
+{
+    const double unit = 1 << PVT_POINT_BITS;
+    Shape whole = {.count = 3};
+    for (int i = 0; i < 3; ++i) {
+        whole.points[i] = (Point){triangle[i].x / unit, triangle[i].y / unit};
+    }
+    const double area = GetArea(whole.points, 3);
+    if (area < 0.0) {
+        const Point swap = whole.points[1];
+        whole.points[1] = whole.points[2];
+        whole.points[2] = swap;
+    }
+    Shape buffers[2][MAX_PIECES];
+    int now = 0;
+    int left = 1;
+    buffers[0][0] = whole;
+    for (size_t i = 0; i < shapes->count && left > 0; ++i) {
+        if (IsClear(&shapes->shapes[i], &whole)) {
+            continue;
+        }
+        const int before = left;
+        if (!Subtract(buffers[now], before, &shapes->shapes[i], buffers[1 - now], &left)) {
+            return false;
+        }
+        now = 1 - now;
+    }
+    double rest = 0.0;
+    for (int i = 0; i < left; ++i) {
+        rest += GetArea(buffers[now][i].points, buffers[now][i].count);
+    }
+    return rest <= fmin(fabs(area) / 64.0, CRACK);
 }

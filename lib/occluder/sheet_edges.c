@@ -8,7 +8,7 @@
 #include "fit.h"
 #include "occluder.h"
 
-enum { FINER = 4, ROUNDS = 4, MAX_CELLS = 8192, MAX_TRIANGLES = 50000 };
+enum { FINER = 4, ROUNDS = 4, MAX_CELLS = 8192, MAX_TRIANGLES = 50000, MAX_SHAPES = 4096 };
 
 typedef struct EdgeTask {
     pvtContext* context;
@@ -19,9 +19,22 @@ typedef struct EdgeTask {
     pvtStatus* statuses; // one a polygon
 } EdgeTask;
 
-// Whether corner `index` may move there: what is added lies in cells, and the polygon grows.
-static bool MayMove(const pvtBitmap* cells, int cellsPerVoxel, pvtPoint2* points, size_t count,
-                    size_t index, pvtPoint2 there)
+// Where corners may move: on cells, or on shapes.
+typedef struct Room {
+    const pvtBitmap* cells; // may be null
+    int cellsPerVoxel;
+    const pvtPlaneShapes* shapes;
+} Room;
+
+static bool IsWithin(const Room* room, const pvtPoint2 triangle[3])
+{
+    return room->cells != NULL ? pvtIsPolygonWithin(room->cells, room->cellsPerVoxel, triangle, 3)
+                               : pvtPlaneShapes_Cover(room->shapes, triangle);
+}
+
+// Whether corner `index` may move there: what is added lies in the room, and the polygon grows.
+static bool MayMove(const Room* room, pvtPoint2* points, size_t count, size_t index,
+                    pvtPoint2 there)
 {
     const pvtPoint2 here = points[index];
     const pvtPoint2 before = points[(index + count - 1) % count];
@@ -35,27 +48,40 @@ static bool MayMove(const pvtBitmap* cells, int cellsPerVoxel, pvtPoint2* points
     points[index] = there;
     const bool isSimple = pvtIsPointSimple(points, count, index);
     points[index] = here;
-    return isSimple && pvtIsPolygonWithin(cells, cellsPerVoxel, swept[0], 3) &&
-           pvtIsPolygonWithin(cells, cellsPerVoxel, swept[1], 3);
+    return isSimple && IsWithin(room, swept[0]) && IsWithin(room, swept[1]);
 }
 
-// Each corner by up to a cell of the sheet's, in steps that halve.
-static void MoveCorners(const pvtBitmap* cells, int cellsPerVoxel, pvtPoint2* points, size_t count)
+// Each corner, in steps that halve from the first to the second, in point units.
+static void MoveCorners(const Room* room, const int32_t steps[2], pvtPoint2* points, size_t count)
 {
-    const int32_t unit = (1 << PVT_POINT_BITS) / cellsPerVoxel;
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < count; ++i) {
-            for (int32_t step = FINER * unit; step >= unit / 4 && step > 0; step /= 2) {
+            for (int32_t step = steps[0]; step >= steps[1]; step /= 2) {
                 for (int way = 0; way < 9; ++way) {
                     const pvtPoint2 there = {points[i].x + (way % 3 - 1) * step,
                                              points[i].y + (way / 3 - 1) * step};
-                    if (MayMove(cells, cellsPerVoxel, points, count, i, there)) {
+                    if (MayMove(room, points, count, i, there)) {
                         points[i] = there;
                     }
                 }
             }
         }
     }
+}
+
+// The last sixteenth of a voxel, exactly; where there are few triangles, as on walls.
+static pvtStatus MoveExactly(const EdgeTask* task, const pvtPlane* plane, pvtPoint2* points,
+                             size_t count)
+{
+    pvtPlaneShapes shapes;
+    const pvtStatus status =
+        pvtCollectPlaneShapes(task->context, task->soup, plane, task->deviation, &shapes);
+    if (status == PVT_OK && shapes.count <= MAX_SHAPES) {
+        const Room room = {.shapes = &shapes};
+        MoveCorners(&room, (int32_t[2]){(1 << PVT_POINT_BITS) / 16, 1}, points, count);
+    }
+    pvtPlaneShapes_Free(task->context, &shapes);
+    return status;
 }
 
 static pvtStatus GrowPolygon(const EdgeTask* task, size_t polygon)
@@ -76,9 +102,13 @@ static pvtStatus GrowPolygon(const EdgeTask* task, size_t polygon)
     if (status == PVT_OK) {
         status = pvtCoverPlane(task->context, task->soup, plane, task->deviation, scale, &cells);
     }
+    pvtPoint2* points = loops->points + loops->starts[polygon];
+    const size_t count = loops->starts[polygon + 1] - loops->starts[polygon];
     if (status == PVT_OK) {
-        MoveCorners(&cells, scale, loops->points + loops->starts[polygon],
-                    loops->starts[polygon + 1] - loops->starts[polygon]);
+        const Room room = {.cells = &cells, .cellsPerVoxel = scale};
+        const int32_t unit = (1 << PVT_POINT_BITS) / scale;
+        MoveCorners(&room, (int32_t[2]){FINER * unit, unit > 4 ? unit / 4 : 1}, points, count);
+        status = MoveExactly(task, plane, points, count);
     }
     pvtBitmap_Free(task->context, &cells);
     return status;
@@ -106,11 +136,11 @@ pvtStatus pvtGrowSheetPanels(pvtContext* context, const pvtSheetSet* sheets, dou
     if (status == PVT_OK && statuses == NULL) {
         status = pvtContext_GetStatus(context);
     }
-    if (status == PVT_OK) {
+    if (status == PVT_OK && statuses != NULL) {
         EdgeTask task = {context, sheets, &soup, deviation, occluder, statuses};
         pvtParallelFor(context, RunGrow, count, 1, &task);
     }
-    for (size_t p = 0; p < count && status == PVT_OK; ++p) {
+    for (size_t p = 0; p < count && status == PVT_OK && statuses != NULL; ++p) {
         status = statuses[p];
     }
     if (status == PVT_OK) {
