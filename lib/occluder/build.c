@@ -34,6 +34,8 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
         {"select", pvtSelectStep, &build.stats.seconds.select},
         // Panels move, tilt and trade triangles for as long as they hide more.
         {"refine", pvtRefineStep, &build.stats.seconds.refine},
+        // Triangles leave their planes and follow what is round.
+        {"bend", pvtBendStep, &build.stats.seconds.refine},
         // The promise is checked by other code than that which made it.
         {"check", pvtCheckStep, &build.stats.seconds.check},
     };

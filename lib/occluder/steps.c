@@ -391,8 +391,11 @@ static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
     if (IsPaper(build) || build->options->budget > MAX_REFINED) {
         return PVT_OK;
     }
-    static const int trials[] = {
-        [PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000};
+    // Panels within the volume are but a start for what pvtBendStep does. Those on the surface stay
+    // as they are after this.
+    static const int trials[2][3] = {
+        {[PVT_EFFORT_FAST] = 300, [PVT_EFFORT_DEFAULT] = 3000, [PVT_EFFORT_BEST] = 30000},
+        {[PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000}};
     const double deadline =
         build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
     const pvtRefineOptions options = {.budget = build->options->budget,
@@ -400,7 +403,8 @@ static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
                                       .bounds = build->bounds,
                                       .sheets = &build->sheets,
                                       .seed = build->options->seed,
-                                      .trials = trials[build->options->effort],
+                                      .trials =
+                                          trials[build->sheets.count > 0][build->options->effort],
                                       .deadline = deadline};
     return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
                              &build->occluder);

@@ -39,6 +39,7 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
 
 enum { PVT_MEASURE_SIZE = 64 }; ///< [px] of the masks that the stats are measured on

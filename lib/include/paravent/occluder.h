@@ -19,6 +19,8 @@ typedef struct pvtLength {
 
 /// Polygons on planes of one grid, and the triangles they make. Polygon p lies on planes[p] and is
 /// loop p of `loops`; no loop is a hole. Triangles face the side that the plane's normal points to.
+/// pvtBuildOccluder moves the triangles' corners on from there, out of the planes, when it refines:
+/// then `mesh` is the occluder, and the polygons are what it began as.
 typedef struct pvtOccluder {
     pvtGridFrame frame;
     pvtPlane* planes; ///< loops.loopCount
@@ -114,7 +116,7 @@ typedef struct pvtSurfaceReach {
 PVT_API pvtStatus pvtTakeOffSurface(pvtContext* context, const pvtSurfaceReach* reach,
                                     const pvtMesh* surface, const pvtMesh* occluder, pvtMesh* rest);
 
-/// How long the refinement may go on: it tries 1,500, 20,000 or 200,000 changes.
+/// How long the refinement may go on: it tries 1,800, 48,000 or 430,000 changes.
 typedef enum pvtEffort { PVT_EFFORT_FAST, PVT_EFFORT_DEFAULT, PVT_EFFORT_BEST } pvtEffort;
 
 typedef struct pvtBuildOptions {
