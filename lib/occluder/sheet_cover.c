@@ -138,7 +138,8 @@ static pvtStatus AddTriangle(Cover* cover, size_t triangle)
         return PVT_OK;
     }
     if (Reserve(cover->context, (void**)&cover->shapes, cover->shapeCount, &cover->shapeCapacity,
-                sizeof *cover->shapes) != PVT_OK) {
+                sizeof *cover->shapes) != PVT_OK ||
+        cover->shapes == NULL) {
         return pvtContext_GetStatus(cover->context);
     }
     Clipped* shape = &cover->shapes[cover->shapeCount];

@@ -10,14 +10,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MIN_SHEETS = 128, MAX_SHEETS = 512, FEW_VIEWS = 12 };
+enum { MIN_SHEETS = 128, MAX_SHEETS = 512 };
 
 // [vx] How far the surface may lie from a panel on it. Up to √3 the bound of the strict interior
-// holds for sheets as well; what is beyond is only for meshes without any.
+// holds for sheets as well. All but the first are for meshes without any.
 static const double DEVIATIONS[] = {0.25, 1.0, 2.0, 4.0};
 static const double BOUND = 1.7320508075688772;
-// A strict interior that hides less than this part of what the mesh hides is as good as none.
-static const double NEXT_TO_NOTHING = 0.05;
 // Sheets that take this part of the surface need not lie any farther off.
 static const double ENOUGH = 0.5;
 
@@ -40,28 +38,6 @@ static pvtStatus FindSheets(pvtContext* context, pvtBuild* build, double deviati
     pvtSheetSet_Free(context, &build->sheets);
     build->deviation = deviation;
     return pvtFindSheets(context, &options, build->mesh, &build->allowed.frame, &build->sheets);
-}
-
-// Measures grids over a few views.
-typedef struct Gauge {
-    pvtViewSet views;
-    pvtBox3 bounds;
-} Gauge;
-
-static pvtStatus CreateGauge(pvtContext* context, const pvtBuild* build, Gauge* gauge)
-{
-    pvtViewOptions options = build->options->views;
-    options.up = (int)build->options->up;
-    options.count = options.count < FEW_VIEWS ? options.count : FEW_VIEWS;
-    gauge->bounds = pvtMesh_GetBounds(build->mesh);
-    return pvtMakeViews(context, &options, &gauge->views);
-}
-
-static pvtStatus MeasureWith(pvtContext* context, const Gauge* gauge, const pvtBitGrid* grid,
-                             const pvtCellGrid* cells, double* measure)
-{
-    const pvtMeasureGridOptions options = {&gauge->views, &gauge->bounds, PVT_MEASURE_SIZE};
-    return pvtMeasureGrid(context, &options, grid, cells, measure);
 }
 
 static int CompareFalling(const void* left, const void* right)
@@ -95,23 +71,12 @@ static pvtStatus GetShare(pvtContext* context, const pvtBuild* build, double* sh
 }
 
 // How far the surface may stray from sheets at most.
-static pvtStatus GetMostDeviation(pvtContext* context, const pvtBuild* build, double* most)
+static double GetMostDeviation(const pvtBuild* build)
 {
-    Gauge gauge = {0};
-    double whole = 0.0;
-    double strict = 0.0;
-    pvtStatus status = CreateGauge(context, build, &gauge);
-    if (status == PVT_OK) {
-        status = MeasureWith(context, &gauge, &build->solid.inside, NULL, &whole);
+    if (pvtBitGrid_Count(&build->allowed) > 0) {
+        return DEVIATIONS[0];
     }
-    if (status == PVT_OK) {
-        status = MeasureWith(context, &gauge, &build->allowed, &build->cells, &strict);
-    }
-    pvtViewSet_Free(context, &gauge.views);
-    *most = strict >= NEXT_TO_NOTHING * whole             ? DEVIATIONS[0]
-            : strict > 0.0 || build->options->error > 0.0 ? BOUND
-                                                          : HUGE_VAL;
-    return status;
+    return build->options->error > 0.0 ? BOUND : HUGE_VAL;
 }
 
 // Sheets may reach into voxels that they do not pass over wholly.
@@ -137,8 +102,8 @@ pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build)
     if (status == PVT_OK && build->sheets.bare > 0.0) {
         status = GetShare(context, build, &share);
     }
-    if (status == PVT_OK && build->sheets.bare > 0.0 && share < ENOUGH) {
-        status = GetMostDeviation(context, build, &most);
+    if (status == PVT_OK && build->sheets.bare > 0.0) {
+        most = GetMostDeviation(build);
     }
     for (size_t i = 1; i < sizeof DEVIATIONS / sizeof *DEVIATIONS && status == PVT_OK &&
                        share < ENOUGH && DEVIATIONS[i] <= most;
