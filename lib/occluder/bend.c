@@ -258,7 +258,7 @@ static void RunBatch(pvtContext* context, Bending* bending)
     for (int i = 0; i < BATCH; ++i) {
         ++bending->next;
         if (bending->trials[i].gains) {
-            pvtApplyFacetChange(&bending->facets, &bending->trials[i].change);
+            pvtApplyFacetChange(context, &bending->facets, &bending->trials[i].change);
             return;
         }
     }

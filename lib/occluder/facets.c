@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROWS = PVT_FACET_ROWS, LAYERS = PVT_FACET_LAYERS, LOOKS = 6 };
+enum { ROWS = PVT_FACET_ROWS, LAYERS = PVT_FACET_LAYERS, LOOKS = 6, MIN_VIEWS = 16 };
 
 // Of the value so far, at a look: who has lost more in some views seldom wins in the others.
 static const double MOST_LOSS = 0.0003;
@@ -79,16 +79,14 @@ static void DrawTriangle(const pvtMaskFrame* frame, const pvtVec3 corners[3], ui
     pvtToggleMaskPolygon(rows, ROWS, points, 3);
 }
 
-static void DrawFacet(pvtFacets* facets, size_t triangle)
+static void DrawFacet(const pvtFacets* facets, size_t triangle, size_t view)
 {
     pvtVec3 corners[3];
     for (size_t c = 0; c < 3; ++c) {
         corners[c] = GetPlace(facets, facets->mesh.indices[3 * triangle + c]);
     }
-    for (size_t v = 0; v < facets->viewCount; ++v) {
-        const size_t mask = triangle * facets->viewCount + v;
-        DrawTriangle(&facets->frames[v], corners, facets->masks + mask * ROWS, facets->spans[mask]);
-    }
+    const size_t mask = triangle * facets->viewCount + view;
+    DrawTriangle(&facets->frames[view], corners, facets->masks + mask * ROWS, facets->spans[mask]);
 }
 
 static void AddMask(const pvtFacets* facets, size_t triangle, size_t view, uint64_t* rows)
@@ -100,7 +98,7 @@ static void AddMask(const pvtFacets* facets, size_t triangle, size_t view, uint6
     }
 }
 
-static void CountLayers(pvtFacets* facets, size_t view)
+static void CountLayers(const pvtFacets* facets, size_t view)
 {
     uint64_t(*layers)[LAYERS] = (uint64_t(*)[LAYERS])(facets->layers + view * ROWS * LAYERS);
     memset(layers, 0, ROWS * sizeof *layers);
@@ -116,7 +114,7 @@ static void CountLayers(pvtFacets* facets, size_t view)
     }
 }
 
-static void CountView(pvtFacets* facets, size_t view)
+static void CountView(const pvtFacets* facets, size_t view)
 {
     uint64_t rows[ROWS] = {0};
     if (view < facets->screenCount) {
@@ -136,11 +134,31 @@ static void CountView(pvtFacets* facets, size_t view)
     }
 }
 
-static void CountViews(pvtFacets* facets)
+typedef struct RedrawTask {
+    const pvtFacets* facets;
+    const size_t* triangles; // null: all
+    size_t count;
+} RedrawTask;
+
+static void RedrawViews(size_t begin, size_t end, int worker, void* taskData)
 {
+    (void)worker;
+    const RedrawTask* task = taskData;
+    for (size_t v = begin; v < end; ++v) {
+        for (size_t i = 0; i < task->count; ++i) {
+            DrawFacet(task->facets, task->triangles != NULL ? task->triangles[i] : i, v);
+        }
+        CountView(task->facets, v);
+    }
+}
+
+// Draws triangles (null: all) anew, and sums what all of them hide.
+static void Redraw(pvtContext* context, pvtFacets* facets, const size_t* triangles, size_t count)
+{
+    RedrawTask task = {facets, triangles, count};
+    pvtParallelFor(context, RedrawViews, facets->viewCount, MIN_VIEWS, &task);
     facets->total = 0.0;
     for (size_t v = 0; v < facets->viewCount; ++v) {
-        CountView(facets, v);
         facets->total += facets->values[v];
         if (v + 1 == facets->screenCount) {
             facets->screened = facets->total;
@@ -224,10 +242,7 @@ pvtStatus pvtCreateFacets(pvtContext* context, const pvtFacetOptions* options, c
         facets->frames[v] = pvtMakeMaskFrame(view, &options->bounds, ROWS);
         facets->factors[v] = GetFactor(view, &options->bounds, &facets->frames[v]);
     }
-    for (size_t t = 0; t < facets->mesh.triangleCount; ++t) {
-        DrawFacet(facets, t);
-    }
-    CountViews(facets);
+    Redraw(context, facets, NULL, facets->mesh.triangleCount);
     return PVT_OK;
 }
 
@@ -245,26 +260,36 @@ static void AddOthers(const pvtFacets* facets, const pvtFacetChange* change, siz
     }
 }
 
-// The same for at most three that change: pixels that are covered once more than those do.
+// The same for at most three that change: pixels that are covered once more than those do. Rows
+// where they have none stay as they are.
 static void TakeFromLayers(const pvtFacets* facets, const pvtFacetChange* change, size_t view,
                            uint64_t* rows)
 {
-    uint64_t once[ROWS] = {0};
-    uint64_t twice[ROWS] = {0};
-    uint64_t thrice[ROWS] = {0};
+    uint64_t taken[ROWS][LAYERS - 1];
+    int first = ROWS, end = 0;
+    for (int i = 0; i < change->count; ++i) {
+        const uint8_t* span = facets->spans[change->triangles[i] * facets->viewCount + view];
+        first = span[0] < first ? span[0] : first;
+        end = span[1] > end ? span[1] : end;
+    }
+    memcpy(rows, facets->rows + view * ROWS, ROWS * sizeof *rows);
+    if (first >= end) {
+        return;
+    }
+    memset(taken[first], 0, (size_t)(end - first) * sizeof *taken);
     for (int i = 0; i < change->count; ++i) {
         const size_t mask = change->triangles[i] * facets->viewCount + view;
-        const uint64_t* taken = facets->masks + mask * ROWS;
+        const uint64_t* own = facets->masks + mask * ROWS;
         for (int y = facets->spans[mask][0]; y < facets->spans[mask][1]; ++y) {
-            thrice[y] |= twice[y] & taken[y];
-            twice[y] |= once[y] & taken[y];
-            once[y] |= taken[y];
+            taken[y][2] |= taken[y][1] & own[y];
+            taken[y][1] |= taken[y][0] & own[y];
+            taken[y][0] |= own[y];
         }
     }
-    for (size_t y = 0; y < ROWS; ++y) {
-        const uint64_t* layers = facets->layers + (view * ROWS + y) * LAYERS;
-        rows[y] =
-            (layers[0] & ~once[y]) | (layers[1] & ~twice[y]) | (layers[2] & ~thrice[y]) | layers[3];
+    for (int y = first; y < end; ++y) {
+        const uint64_t* layers = facets->layers + (view * ROWS + (size_t)y) * LAYERS;
+        rows[y] = (layers[0] & ~taken[y][0]) | (layers[1] & ~taken[y][1]) |
+                  (layers[2] & ~taken[y][2]) | layers[3];
     }
 }
 
@@ -336,7 +361,7 @@ void pvtEvaluateFacetChange(const pvtFacets* facets, pvtFacetChange* change)
     }
 }
 
-void pvtApplyFacetChange(pvtFacets* facets, const pvtFacetChange* change)
+void pvtApplyFacetChange(pvtContext* context, pvtFacets* facets, const pvtFacetChange* change)
 {
     for (int i = 0; i < change->movedCount; ++i) {
         facets->mesh.positions[change->moved[i]] = change->places[i];
@@ -344,7 +369,6 @@ void pvtApplyFacetChange(pvtFacets* facets, const pvtFacetChange* change)
     for (int i = 0; i < change->count; ++i) {
         memcpy(facets->mesh.indices + 3 * change->triangles[i], change->corners[i],
                sizeof change->corners[i]);
-        DrawFacet(facets, change->triangles[i]);
     }
-    CountViews(facets);
+    Redraw(context, facets, change->triangles, (size_t)change->count);
 }

@@ -63,6 +63,6 @@ pvtVec3 pvtGetChangedPlace(const pvtFacets* facets, const pvtFacetChange* change
 bool pvtScreenFacetChange(const pvtFacets* facets, const pvtFacetChange* change);
 /// Sets both values of the change, exactly those that the facets have after it.
 void pvtEvaluateFacetChange(const pvtFacets* facets, pvtFacetChange* change);
-void pvtApplyFacetChange(pvtFacets* facets, const pvtFacetChange* change);
+void pvtApplyFacetChange(pvtContext* context, pvtFacets* facets, const pvtFacetChange* change);
 
 #endif

@@ -194,7 +194,7 @@ static void the_value_of_a_change_is_that_of_the_changed_mesh_bit_for_bit(void**
         const bool seemsToGain = pvtScreenFacetChange(&facets, &change);
         pvtEvaluateFacetChange(&facets, &change);
         assert_true(!seemsToGain || change.screened > facets.screened);
-        pvtApplyFacetChange(&facets, &change);
+        pvtApplyFacetChange(context, &facets, &change);
         assert_true(change.screened == facets.screened && change.total == facets.total);
         if (step % 100 == 0) {
             pvtFacets anew;
