@@ -52,11 +52,49 @@ static pvtStatus MakeMoreViews(pvtContext* context, const pvtBuild* build, pvtVi
     return status;
 }
 
+static pvtStatus MeasureMesh(pvtContext* context, const pvtBuild* build, const pvtMesh* mesh,
+                             double* measure)
+{
+    return pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE, mesh,
+                               measure);
+}
+
+// What hides more rectangles nearly always has the greater measure, too. Where it has not, the
+// polygons stay as they were: the measure never falls.
+static pvtStatus BendUnlessWorse(pvtContext* context, pvtBuild* build,
+                                 const pvtBendOptions* options)
+{
+    pvtOccluder* occluder = &build->occluder;
+    pvtMesh flat;
+    pvtStatus status =
+        pvtCreateMesh(context, occluder->mesh.positions, occluder->mesh.positionCount,
+                      occluder->mesh.indices, occluder->mesh.triangleCount, &flat);
+    double before = 0.0;
+    double after = 0.0;
+    if (status == PVT_OK) {
+        status = MeasureMesh(context, build, &flat, &before);
+    }
+    if (status == PVT_OK) {
+        status = pvtBendOccluder(context, options, occluder);
+    }
+    if (status == PVT_OK) {
+        status = MeasureMesh(context, build, &occluder->mesh, &after);
+    }
+    if (status == PVT_OK && after < before) {
+        const pvtMesh bent = occluder->mesh;
+        occluder->mesh = flat;
+        flat = bent;
+    }
+    pvtMesh_Free(context, &flat);
+    return status;
+}
+
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
 {
     const size_t triangles = build->occluder.mesh.triangleCount;
     const bool hasVolume = build->solid.strictCount > 0 || build->stats.tolerance > 0.0;
-    if (build->options->method == PVT_METHOD_PAPER || !hasVolume || triangles > PVT_MAX_FACETS ||
+    if (build->options->method == PVT_METHOD_PAPER || !hasVolume || triangles == 0 ||
+        triangles > PVT_MAX_FACETS ||
         pvtGetFacetBytes(triangles, build->views.count) > MAX_BEND_BYTES) {
         return PVT_OK;
     }
@@ -78,7 +116,7 @@ pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
     if (status == PVT_OK) {
         options.more = &more;
         options.inside = &inside;
-        status = pvtBendOccluder(context, &options, &build->occluder);
+        status = BendUnlessWorse(context, build, &options);
     }
     pvtInsideTest_Free(context, &inside);
     pvtViewSet_Free(context, &more);
