@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What the subcommands share: options for occluders, and the grid that they lie in.
 #include "bench.h"
+#include "choices.h"
 
 #include <math.h>
-
-static const char* const axisChoices[] = {"x", "y", "z", NULL};
 
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtBenchLine, field)
 
@@ -35,7 +34,7 @@ const pvtOption pvtBenchOptionTable[] = {
     {.name = "terrain", FIELD(PVT_OPTION_FLAG, terrain), .help = "as of paravent generate"},
     {.name = "up",
      FIELD(PVT_OPTION_CHOICE, up),
-     .choices = axisChoices,
+     .choices = pvtAxisChoices,
      .help = "as of paravent generate"},
     {.name = "enclosed",
      FIELD(PVT_OPTION_INT, enclosed),

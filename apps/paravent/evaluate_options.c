@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
 // The line of `paravent evaluate` as a table, and what its numbers mean.
+#include "choices.h"
 #include "evaluate.h"
 
 #include <paravent/evaluate.h>
 
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtEvaluateLine, field)
 
-static const char* const maskedChoices[] = {"auto", "opaque", "skip", NULL};
-
 static const pvtOption inputTable[] = {
     {.name = "masked",
      FIELD(PVT_OPTION_CHOICE, masked),
-     .choices = maskedChoices,
+     .choices = pvtMaskedChoices,
      .help = "ORIGINAL's materials with an alpha mask: opaque where their texture is (left out, "
              "with a warning, where it cannot be read), opaque throughout, or left out"},
 };

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The line of `paravent generate` as a table.
+#include "choices.h"
 #include "generate.h"
 
 #include <math.h>
 #include <string.h>
 
-static const char* const axisChoices[] = {"x", "y", "z", NULL};
-static const char* const methodChoices[] = {"planar", "paper", NULL};
-static const char* const effortChoices[] = {"fast", "default", "best", NULL};
 static const char* const slicerChoices[] = {"auto", "sample", "egl", "osmesa", NULL};
-static const char* const maskedChoices[] = {"auto", "opaque", "skip", NULL};
-static const char* const conventionChoices[] = {"plain", "godot", NULL};
 
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtGenerateOptions, field)
 
@@ -36,7 +32,7 @@ static const pvtOption outputTable[] = {
      .help = "a picture of six views, the original with the occluder over it"},
     {.name = "convention",
      FIELD(PVT_OPTION_CHOICE, convention),
-     .choices = conventionChoices,
+     .choices = pvtConventionChoices,
      .help = "the occluder's node is called NAME_occluder, or NAME-occonly as Godot's import "
              "wants it; NAME is the input file's, or with --separate the node's"},
 };
@@ -89,11 +85,11 @@ static const pvtOption occluderTable[] = {
 const pvtOption pvtOptimizerOptionTable[] = {
     {.name = "method",
      FIELD(PVT_OPTION_CHOICE, method),
-     .choices = methodChoices,
+     .choices = pvtMethodChoices,
      .help = "how polygons are chosen: by gain per triangle, or as in the paper"},
     {.name = "effort",
      FIELD(PVT_OPTION_CHOICE, effort),
-     .choices = effortChoices,
+     .choices = pvtEffortChoices,
      .help = "how long to go on improving the occluder; nothing to the paper's way"},
     {.name = "views",
      FIELD(PVT_OPTION_TEXT, views),
@@ -122,7 +118,7 @@ const pvtOption pvtSolidOptionTable[] = {
      .help = "all below the lowest surface is inside, for landscapes"},
     {.name = "up",
      FIELD(PVT_OPTION_CHOICE, up),
-     .choices = axisChoices,
+     .choices = pvtAxisChoices,
      .help = "the axis that points up, for --ground, --terrain and --views above"},
     {.name = "enclosed",
      FIELD(PVT_OPTION_INT, enclosed),
@@ -149,7 +145,7 @@ const pvtOption pvtInputOptionTable[] = {
      .help = "take only this node and what is below it"},
     {.name = "masked",
      FIELD(PVT_OPTION_CHOICE, masked),
-     .choices = maskedChoices,
+     .choices = pvtMaskedChoices,
      .help = "materials with an alpha mask: opaque where their texture is (left out, with a "
              "warning, where it cannot be read), opaque throughout, or left out"},
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `paravent generate` tells: the model's extras, the stats file, the summary.
+#include "choices.h"
 #include "generate.h"
 #include "json.h"
 #include "separate.h"
@@ -15,7 +16,6 @@ enum { NAME_SIZE = 256 };
 void pvtListExtras(const pvtGenerateOptions* options, const pvtBuildStats* stats, int budget,
                    pvtExtra extras[PVT_OCCLUDER_EXTRA_COUNT])
 {
-    static const char* const efforts[] = {"fast", "default", "best"};
     const pvtExtra all[PVT_OCCLUDER_EXTRA_COUNT] = {
         {"error_bound", stats->errorBound, NULL},
         {"surface_polygons", stats->surfacePanels, NULL},
@@ -28,8 +28,8 @@ void pvtListExtras(const pvtGenerateOptions* options, const pvtBuildStats* stats
         {"measure", stats->measure, NULL},
         {"measure_of_solid", stats->measureOfSolid, NULL},
         {"outside", (double)stats->outside, NULL},
-        {"method", 0.0, options->method == PVT_METHOD_PAPER ? "paper" : "planar"},
-        {"effort", 0.0, efforts[options->effort]},
+        {"method", 0.0, pvtMethodChoices[options->method]},
+        {"effort", 0.0, pvtEffortChoices[options->effort]},
         {"seed", (double)options->seed, NULL},
     };
     memcpy(extras, all, sizeof all);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The line of `paravent ladder` as a table, and its lists.
+#include "choices.h"
 #include "ladder.h"
 #include "values.h"
 
 #include <math.h>
 #include <string.h>
 
-static const char* const conventionChoices[] = {"plain", "godot", NULL};
 static const char* const namingChoices[] = {"msft", "suffix", NULL};
 
 #define FIELD(kindName, field) .kind = (kindName), .offset = offsetof(pvtLadderLine, field)
@@ -33,7 +33,7 @@ static const pvtOption outputTable[] = {
          "node a part, in world coordinates, without materials and all else"},
     {.name = "convention",
      FIELD(PVT_OPTION_CHOICE, generate.convention),
-     .choices = conventionChoices,
+     .choices = pvtConventionChoices,
      .help = "names end in _occluder, or in -occonly as Godot's import wants it; with --naming "
              "suffix plain names end in _LOD0 and so on"},
     {.name = "stats",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What `paravent ladder` tells: the model, the stats file, the table.
+#include "choices.h"
 #include "ladder.h"
 #include "targets.h"
 
@@ -7,8 +8,6 @@
 #include <string.h>
 
 enum { NAME_SIZE = 256, EXTRA_COUNT = 16 };
-
-static const char* const efforts[] = {"fast", "default", "best"};
 
 // NAME_LOD0 of plain nodes; NAME_occluder, NAME_occluder_LOD1 and so on of those in a chain.
 static void MakeName(const pvtLadderLine* options, const char* stem, size_t level,
@@ -42,8 +41,8 @@ static void ListExtras(const pvtLadderLine* options, const pvtLevel* level, size
         {"measure_of_solid", stats->measureOfSolid, NULL},
         {"outside", (double)stats->outside, NULL},
         {"pixel_error", options->pixelError, NULL},
-        {"method", 0.0, options->generate.method == PVT_METHOD_PAPER ? "paper" : "planar"},
-        {"effort", 0.0, efforts[options->generate.effort]},
+        {"method", 0.0, pvtMethodChoices[options->generate.method]},
+        {"effort", 0.0, pvtEffortChoices[options->generate.effort]},
         {"seed", (double)options->generate.seed, NULL},
     };
     memcpy(extras, all, sizeof all);
