@@ -4,10 +4,10 @@
 #include "generate.h"
 #include "json.h"
 #include "separate.h"
+#include "stages.h"
 #include "targets.h"
 #include "values.h"
 
-#include <math.h>
 #include <paravent/output.h>
 #include <string.h>
 
@@ -52,26 +52,14 @@ pvtStatus pvtSaveOccluder(pvtRun* run, const pvtGenerateOptions* options,
     return pvtSaveModel(run->context, options->output, &item, 1);
 }
 
-static void WriteStage(pvtJson* json, const char* stage, double seconds)
-{
-    pvtJson_Number(json, stage, round(seconds * 1e6) / 1e6);
-}
-
 static void WriteSeconds(pvtJson* json, const pvtGenerated* generated)
 {
-    const pvtBuildStats* stats = &generated->stats;
     pvtJson_BeginObject(json, "seconds");
-    WriteStage(json, "load", generated->loaded - generated->prepared);
-    WriteStage(json, "voxelize", stats->seconds.voxelize);
-    WriteStage(json, "solid", stats->seconds.solid);
-    WriteStage(json, "sections", stats->seconds.sections);
-    WriteStage(json, "chains", stats->seconds.chains);
-    WriteStage(json, "select", stats->seconds.select);
-    WriteStage(json, "refine", stats->seconds.refine);
-    WriteStage(json, "check", stats->seconds.check);
-    WriteStage(json, "preview", generated->previewed - generated->built);
-    WriteStage(json, "save", generated->saved - generated->previewed);
-    WriteStage(json, "total", generated->saved - generated->began);
+    pvtWriteStage(json, "load", generated->loaded - generated->prepared);
+    pvtWriteStages(json, &generated->stats);
+    pvtWriteStage(json, "preview", generated->previewed - generated->built);
+    pvtWriteStage(json, "save", generated->saved - generated->previewed);
+    pvtWriteStage(json, "total", generated->saved - generated->began);
     pvtJson_EndObject(json);
 }
 
@@ -196,13 +184,10 @@ pvtStatus pvtSaveStats(pvtRun* run, const pvtGenerateOptions* options,
 
 static void PrintSeconds(pvtRun* run, const pvtGenerated* generated)
 {
-    const pvtBuildStats* stats = &generated->stats;
-    pvtReport_Detail(&run->report,
-                     "  seconds: load %.3f, voxelize %.3f, solid %.3f, sections %.3f, "
-                     "chains %.3f, select %.3f, refine %.3f, check %.3f, preview %.3f, save %.3f",
-                     generated->loaded - generated->prepared, stats->seconds.voxelize,
-                     stats->seconds.solid, stats->seconds.sections, stats->seconds.chains,
-                     stats->seconds.select, stats->seconds.refine, stats->seconds.check,
+    char stages[PVT_STAGES_TEXT_SIZE];
+    pvtPrintStages(&generated->stats, stages);
+    pvtReport_Detail(&run->report, "  seconds: load %.3f, %s, preview %.3f, save %.3f",
+                     generated->loaded - generated->prepared, stages,
                      generated->previewed - generated->built,
                      generated->saved - generated->previewed);
 }

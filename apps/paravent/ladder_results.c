@@ -2,9 +2,9 @@
 // What `paravent ladder` tells: the model, the stats file, the table.
 #include "choices.h"
 #include "ladder.h"
+#include "stages.h"
 #include "targets.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { NAME_SIZE = 256, EXTRA_COUNT = 16 };
@@ -88,22 +88,11 @@ pvtStatus pvtSaveLadder(pvtRun* run, const pvtLadderLine* options, const pvtLadd
     return status;
 }
 
-static void WriteStage(pvtJson* json, const char* stage, double seconds)
-{
-    pvtJson_Number(json, stage, round(seconds * 1e6) / 1e6);
-}
-
 static void WriteLevelSeconds(pvtJson* json, const pvtBuildStats* stats)
 {
     pvtJson_BeginObject(json, "seconds");
-    WriteStage(json, "voxelize", stats->seconds.voxelize);
-    WriteStage(json, "solid", stats->seconds.solid);
-    WriteStage(json, "sections", stats->seconds.sections);
-    WriteStage(json, "chains", stats->seconds.chains);
-    WriteStage(json, "select", stats->seconds.select);
-    WriteStage(json, "refine", stats->seconds.refine);
-    WriteStage(json, "check", stats->seconds.check);
-    WriteStage(json, "total", stats->seconds.total);
+    pvtWriteStages(json, stats);
+    pvtWriteStage(json, "total", stats->seconds.total);
     pvtJson_EndObject(json);
 }
 
@@ -144,11 +133,11 @@ static void WriteSphere(pvtJson* json, const pvtLadder* ladder)
 static void WriteSeconds(pvtJson* json, const pvtLadderResult* result)
 {
     pvtJson_BeginObject(json, "seconds");
-    WriteStage(json, "load", result->loaded - result->prepared);
-    WriteStage(json, "levels", result->built - result->loaded);
-    WriteStage(json, "preview", result->previewed - result->built);
-    WriteStage(json, "save", result->saved - result->previewed);
-    WriteStage(json, "total", result->saved - result->began);
+    pvtWriteStage(json, "load", result->loaded - result->prepared);
+    pvtWriteStage(json, "levels", result->built - result->loaded);
+    pvtWriteStage(json, "preview", result->previewed - result->built);
+    pvtWriteStage(json, "save", result->saved - result->previewed);
+    pvtWriteStage(json, "total", result->saved - result->began);
     pvtJson_EndObject(json);
 }
 

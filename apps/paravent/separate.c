@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "separate.h"
 
+#include "stages.h"
 #include "unique_names.h"
 #include "values.h"
 
@@ -33,31 +34,12 @@ static size_t CountNodes(const pvtGenerated* generated)
     return count;
 }
 
-static void AddSeconds(pvtBuildStats* sum, const pvtBuildStats* stats)
-{
-    sum->seconds.voxelize += stats->seconds.voxelize;
-    sum->seconds.solid += stats->seconds.solid;
-    sum->seconds.sections += stats->seconds.sections;
-    sum->seconds.chains += stats->seconds.chains;
-    sum->seconds.select += stats->seconds.select;
-    sum->seconds.refine += stats->seconds.refine;
-    sum->seconds.check += stats->seconds.check;
-    sum->seconds.total += stats->seconds.total;
-}
-
 // Stages of meshes that are worked on side by side take more together than passes on the clock:
 // each gets its share of that.
 static void FitSeconds(pvtBuildStats* sum, double passed)
 {
     const double factor = sum->seconds.total > passed ? passed / sum->seconds.total : 1.0;
-    sum->seconds.voxelize *= factor;
-    sum->seconds.solid *= factor;
-    sum->seconds.sections *= factor;
-    sum->seconds.chains *= factor;
-    sum->seconds.select *= factor;
-    sum->seconds.refine *= factor;
-    sum->seconds.check *= factor;
-    sum->seconds.total *= factor;
+    pvtScaleSeconds(sum, factor);
 }
 
 // Of the whole: the largest lengths, the sums of what can be summed, and a mean over the nodes.
@@ -88,7 +70,7 @@ static void SumUp(pvtGenerated* generated, double passed)
         sum->outside += stats->outside;
         sum->candidateCount += stats->candidateCount;
         generated->polygonCount += occluder->instanceCount * occluder->polygonCount;
-        AddSeconds(sum, stats);
+        pvtAddSeconds(sum, stats);
     }
     sum->insideFraction /= nodes > 0.0 ? nodes : 1.0;
     FitSeconds(sum, passed);
@@ -265,7 +247,7 @@ static void WriteOccluder(pvtJson* json, const pvtGenerated* generated,
     pvtJson_Number(json, "measure", stats->measure);
     pvtJson_Number(json, "measure_of_solid", stats->measureOfSolid);
     pvtJson_Integer(json, "outside", (int64_t)stats->outside);
-    pvtJson_Number(json, "seconds", round(stats->seconds.total * 1e6) / 1e6);
+    pvtWriteStage(json, "seconds", stats->seconds.total);
     pvtJson_EndObject(json);
 }
 
