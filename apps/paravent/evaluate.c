@@ -40,13 +40,9 @@ static pvtStatus CheckFiles(pvtRun* run, const pvtEvaluateLine* line, const Sess
     targets[count++] = (pvtTarget){"--plot", line->plot, true};
     targets[count++] = (pvtTarget){"--silhouettes", line->silhouettes, false};
     targets[count++] = (pvtTarget){"--report", line->report, false};
-    const pvtStatus status = pvtCheckTargets(run, targets, count);
-    if (status == PVT_OK && line->silhouettes != NULL &&
-        !pvtPathEndsIn(line->silhouettes, ".png")) {
-        return pvtRun_Fail(run, PVT_UNSUPPORTED,
-                           "--silhouettes %s: pictures are written as .png; give the name that "
-                           "ending",
-                           line->silhouettes);
+    pvtStatus status = pvtCheckTargets(run, targets, count);
+    if (status == PVT_OK) {
+        status = pvtCheckPicture(run, "--silhouettes", line->silhouettes);
     }
     if (status == PVT_OK && line->plot != NULL && !IsStdout(line->plot) &&
         !pvtPathEndsIn(line->plot, ".svg")) {

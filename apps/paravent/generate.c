@@ -5,12 +5,11 @@
 #include "command.h"
 #include "separate.h"
 #include "setup.h"
-#include "targets.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static pvtStatus CheckEndings(pvtRun* run, const pvtGenerateOptions* options)
+static pvtStatus CheckEnding(pvtRun* run, const pvtGenerateOptions* options)
 {
     if (strcmp(options->output, "-") != 0 && !pvtCanSaveModel(options->output)) {
         return pvtRun_Fail(
@@ -19,34 +18,7 @@ static pvtStatus CheckEndings(pvtRun* run, const pvtGenerateOptions* options)
             "the name one of these endings",
             options->output);
     }
-    if (options->preview != NULL && !pvtPathEndsIn(options->preview, ".png")) {
-        return pvtRun_Fail(run, PVT_UNSUPPORTED,
-                           "--preview %s: pictures are written as .png; give the name that ending",
-                           options->preview);
-    }
     return PVT_OK;
-}
-
-static pvtStatus CheckFiles(pvtRun* run, const pvtGenerateOptions* options, const char* input)
-{
-    const pvtTarget targets[] = {
-        {NULL, input, false},
-        {NULL, pvtGetViewFile(options), false},
-        {"--output", options->output, false},
-        {"--stats", options->stats, true},
-        {"--preview", options->preview, false},
-    };
-    return pvtCheckTargets(run, targets, sizeof targets / sizeof *targets);
-}
-
-static pvtStatus Prepare(pvtRun* run, const pvtGenerateOptions* options, const char* input,
-                         pvtSetup* setup)
-{
-    pvtStatus status = CheckEndings(run, options);
-    if (status == PVT_OK) {
-        status = CheckFiles(run, options, input);
-    }
-    return status == PVT_OK ? pvtOpenSetup(run, options, setup) : status;
 }
 
 static pvtStatus Load(pvtRun* run, const pvtGenerateOptions* options, pvtGenerated* generated)
@@ -176,7 +148,10 @@ static int RunGenerate(int count, char* const* words)
                         "--resolution and --error both set the voxels' size; give one of them");
     }
     if (status == PVT_OK) {
-        status = Prepare(&run, &options, operands[0], &setup);
+        status = CheckEnding(&run, &options);
+    }
+    if (status == PVT_OK) {
+        status = pvtOpenSetup(&run, &options, operands[0], &setup);
     }
     if (status == PVT_OK) {
         status = Generate(&run, &options, &setup, &generated);

@@ -4,11 +4,10 @@
 
 #include "command.h"
 #include "setup.h"
-#include "targets.h"
 
 #include <string.h>
 
-static pvtStatus CheckEndings(pvtRun* run, const pvtGenerateOptions* options)
+static pvtStatus CheckEnding(pvtRun* run, const pvtGenerateOptions* options)
 {
     if (strcmp(options->output, "-") != 0 && !pvtCanSaveLevels(options->output)) {
         return pvtRun_Fail(run, PVT_UNSUPPORTED,
@@ -16,29 +15,7 @@ static pvtStatus CheckEndings(pvtRun* run, const pvtGenerateOptions* options)
                            "of these endings",
                            options->output);
     }
-    if (options->preview != NULL && !pvtPathEndsIn(options->preview, ".png")) {
-        return pvtRun_Fail(run, PVT_UNSUPPORTED,
-                           "--preview %s: pictures are written as .png; give the name that ending",
-                           options->preview);
-    }
     return PVT_OK;
-}
-
-static pvtStatus Prepare(pvtRun* run, const pvtGenerateOptions* options, const char* input,
-                         pvtSetup* setup)
-{
-    const pvtTarget targets[] = {
-        {NULL, input, false},
-        {NULL, pvtGetViewFile(options), false},
-        {"--output", options->output, false},
-        {"--stats", options->stats, true},
-        {"--preview", options->preview, false},
-    };
-    pvtStatus status = CheckEndings(run, options);
-    if (status == PVT_OK) {
-        status = pvtCheckTargets(run, targets, sizeof targets / sizeof *targets);
-    }
-    return status == PVT_OK ? pvtOpenSetup(run, options, setup) : status;
 }
 
 // As closely as the finest level needs it.
@@ -145,7 +122,10 @@ static int RunLadder(int count, char* const* words)
         status = pvtReadLevels(&run, &options, &line, &ladder);
     }
     if (status == PVT_OK) {
-        status = Prepare(&run, &options.generate, operands[0], &setup);
+        status = CheckEnding(&run, &options.generate);
+    }
+    if (status == PVT_OK) {
+        status = pvtOpenSetup(&run, &options.generate, operands[0], &setup);
     }
     if (status == PVT_OK) {
         status = MakeLadder(&run, &options, &ladder, &setup, &result);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "setup.h"
 
+#include "targets.h"
+
 #include <math.h>
 #include <string.h>
 
-const char* pvtGetViewFile(const pvtGenerateOptions* options)
+// The file that --views names, or null.
+static const char* GetViewFile(const pvtGenerateOptions* options)
 {
     const bool isWord = strcmp(options->views, "all") == 0 || strcmp(options->views, "above") == 0;
     return isWord ? NULL : options->views;
@@ -53,11 +56,26 @@ static pvtStatus CheckImages(pvtRun* run, const pvtGenerateOptions* options)
     return pvtRun_Fail(run, status, "--preview %s: %s", options->preview, reason);
 }
 
-pvtStatus pvtOpenSetup(pvtRun* run, const pvtGenerateOptions* options, pvtSetup* setup)
+static pvtStatus CheckFiles(pvtRun* run, const pvtGenerateOptions* options, const char* input)
 {
-    pvtStatus status = PVT_OK;
-    const char* viewFile = pvtGetViewFile(options);
-    if (viewFile != NULL) {
+    const pvtTarget targets[] = {
+        {NULL, input, false},
+        {NULL, GetViewFile(options), false},
+        {"--output", options->output, false},
+        {"--stats", options->stats, true},
+        {"--preview", options->preview, false},
+    };
+    const pvtStatus status = pvtCheckPicture(run, "--preview", options->preview);
+    return status == PVT_OK ? pvtCheckTargets(run, targets, sizeof targets / sizeof *targets)
+                            : status;
+}
+
+pvtStatus pvtOpenSetup(pvtRun* run, const pvtGenerateOptions* options, const char* input,
+                       pvtSetup* setup)
+{
+    pvtStatus status = CheckFiles(run, options, input);
+    const char* viewFile = GetViewFile(options);
+    if (status == PVT_OK && viewFile != NULL) {
         status = pvtReadViewList(run, viewFile, &setup->views);
     }
     if (status == PVT_OK && options->preview != NULL) {

@@ -12,11 +12,10 @@ typedef struct pvtSetup {
     bool slicesOnGl;
 } pvtSetup;
 
-/// The file that --views names, or null.
-const char* pvtGetViewFile(const pvtGenerateOptions* options);
-
-/// Reads the views, and sees whether slices and pictures can be made. Close it also on failure.
-pvtStatus pvtOpenSetup(pvtRun* run, const pvtGenerateOptions* options, pvtSetup* setup);
+/// Checks the files that the line names, reads the views, and sees whether slices and pictures can
+/// be made. Close it also on failure.
+pvtStatus pvtOpenSetup(pvtRun* run, const pvtGenerateOptions* options, const char* input,
+                       pvtSetup* setup);
 /// What the line asks for, with the slicer that was opened. Borrows from both.
 pvtBuildOptions pvtSetup_GetBuildOptions(const pvtSetup* setup, const pvtGenerateOptions* options);
 void pvtSetup_Close(pvtRun* run, pvtSetup* setup);

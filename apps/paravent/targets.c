@@ -175,3 +175,13 @@ pvtStatus pvtCheckTargets(pvtRun* run, const pvtTarget* targets, size_t count)
     }
     return status;
 }
+
+pvtStatus pvtCheckPicture(pvtRun* run, const char* option, const char* path)
+{
+    if (path == NULL || pvtPathEndsIn(path, ".png")) {
+        return PVT_OK;
+    }
+    return pvtRun_Fail(run, PVT_UNSUPPORTED,
+                       "%s %s: pictures are written as .png; give the name that ending", option,
+                       path);
+}

@@ -16,6 +16,9 @@ typedef struct pvtTarget {
 /// used twice, when a folder is missing, and when a file cannot be made where a target will be.
 pvtStatus pvtCheckTargets(pvtRun* run, const pvtTarget* targets, size_t count);
 
+/// Fails when `path` (null: not asked for) names a picture with another ending than .png.
+pvtStatus pvtCheckPicture(pvtRun* run, const char* option, const char* path);
+
 /// Whether the path ends like ".png", in any case of letters.
 bool pvtPathEndsIn(const char* path, const char* ending);
 
