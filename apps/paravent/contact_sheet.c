@@ -86,17 +86,9 @@ static pvtStatus DrawBlock(pvtContext* context, const pvtJudgement* judgement, s
                            const pvtMesh* meshes, const pvtSheetViews* chosen, pvtImage* sheet)
 {
     const pvtOccluderScore* score = &judgement->evaluation->occluders[index];
-    pvtVec3 directions[PVT_SHEET_VIEWS];
+    const pvtMesh* const pair[2] = {&meshes[0], &meshes[1 + index]};
     pvtImage tiles[PVT_SHEET_VIEWS];
-    for (size_t i = 0; i < chosen->count; ++i) {
-        directions[i] = score->views[chosen->views[i]].direction;
-    }
-    pvtSilhouetteOptions options = pvtDefaultSilhouetteOptions();
-    options.directions = directions;
-    options.count = chosen->count;
-    options.width = options.height = TILE;
-    const pvtStatus status =
-        pvtDrawSilhouettes(context, &options, &meshes[0], &meshes[1 + index], tiles);
+    const pvtStatus status = pvtDrawSheetViews(context, chosen, pair, TILE, tiles);
     if (status != PVT_OK) {
         return status;
     }

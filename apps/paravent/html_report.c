@@ -173,19 +173,11 @@ static bool WritePicture(pvtJson* json, const pvtImage* image)
     return text != NULL;
 }
 
-static pvtStatus WritePictures(pvtRun* run, pvtJson* json, const pvtOccluderScore* score,
-                               const pvtSheetViews* chosen, const pvtMesh* const meshes[2])
+static pvtStatus WritePictures(pvtRun* run, pvtJson* json, const pvtSheetViews* chosen,
+                               const pvtMesh* const meshes[2])
 {
-    pvtVec3 directions[PVT_SHEET_VIEWS];
     pvtImage images[PVT_SHEET_VIEWS];
-    for (size_t i = 0; i < chosen->count; ++i) {
-        directions[i] = score->views[chosen->views[i]].direction;
-    }
-    pvtSilhouetteOptions options = pvtDefaultSilhouetteOptions();
-    options.directions = directions;
-    options.count = chosen->count;
-    options.width = options.height = TILE;
-    pvtStatus status = pvtDrawSilhouettes(run->context, &options, meshes[0], meshes[1], images);
+    pvtStatus status = pvtDrawSheetViews(run->context, chosen, meshes, TILE, images);
     if (status != PVT_OK) {
         return status;
     }
@@ -288,7 +280,7 @@ static pvtStatus WriteExtra(pvtRun* run, pvtOutput* output, const pvtJudgement* 
     pvtStatus status = PVT_OK;
     for (size_t i = 0; i < evaluation->count && status == PVT_OK; ++i) {
         const pvtMesh* const pair[2] = {&meshes[0], &meshes[1 + i]};
-        status = WritePictures(run, &json, &evaluation->occluders[i], &chosen, pair);
+        status = WritePictures(run, &json, &chosen, pair);
     }
     pvtJson_EndArray(&json);
     pvtJson_EndObject(&json);

@@ -39,9 +39,10 @@ void pvtPlotRecall(pvtOutput* output, const pvtJudgement* judgement);
 
 enum { PVT_SHEET_VIEWS = 12 };
 
-/// Views by their numbers.
+/// Views by their numbers, and where they look: the same for all occluders.
 typedef struct pvtSheetViews {
     size_t views[PVT_SHEET_VIEWS];
+    pvtVec3 directions[PVT_SHEET_VIEWS];
     size_t count;
 } pvtSheetViews;
 
@@ -49,6 +50,10 @@ typedef struct pvtSheetViews {
 /// of their numbers, which are a fair sample since directions are random. In the order of the first
 /// occluder's recall.
 pvtSheetViews pvtChooseSheetViews(const pvtEvaluation* evaluation);
+
+/// A picture a view, with sides of `size` pixels, of the original and an occluder.
+pvtStatus pvtDrawSheetViews(pvtContext* context, const pvtSheetViews* chosen,
+                            const pvtMesh* const meshes[2], int size, pvtImage* images);
 
 /// A contact sheet: a block an occluder, the same views in each. `meshes` holds the original, then
 /// the occluders.

@@ -39,7 +39,7 @@ static void SortViews(const pvtOccluderScore* score, pvtSheetViews* chosen)
 
 pvtSheetViews pvtChooseSheetViews(const pvtEvaluation* evaluation)
 {
-    pvtSheetViews chosen = {{0}, 0};
+    pvtSheetViews chosen = {0};
     const size_t all = evaluation->occluders[0].viewCount;
     for (size_t i = 0; i < evaluation->count; ++i) {
         AddView(&chosen, evaluation->occluders[i].worstView);
@@ -51,5 +51,18 @@ pvtSheetViews pvtChooseSheetViews(const pvtEvaluation* evaluation)
         AddView(&chosen, v);
     }
     SortViews(&evaluation->occluders[0], &chosen);
+    for (size_t i = 0; i < chosen.count; ++i) {
+        chosen.directions[i] = evaluation->occluders[0].views[chosen.views[i]].direction;
+    }
     return chosen;
+}
+
+pvtStatus pvtDrawSheetViews(pvtContext* context, const pvtSheetViews* chosen,
+                            const pvtMesh* const meshes[2], int size, pvtImage* images)
+{
+    pvtSilhouetteOptions options = pvtDefaultSilhouetteOptions();
+    options.directions = chosen->directions;
+    options.count = chosen->count;
+    options.width = options.height = size;
+    return pvtDrawSilhouettes(context, &options, meshes[0], meshes[1], images);
 }
