@@ -22,6 +22,7 @@ typedef struct SilhouetteTask {
     const pvtSoup *original, *occluder;
     SilhouetteScratch* scratches; // one a worker
     pvtImage* images;
+    atomic_size_t done;
     _Atomic pvtStatus status; // the first failure
 } SilhouetteTask;
 
@@ -135,8 +136,9 @@ static void DrawPictures(size_t begin, size_t end, int worker, void* taskData)
         pvtStatus none = PVT_OK;
         const pvtStatus status = DrawPicture(task, i, &task->scratches[worker]);
         atomic_compare_exchange_strong(&task->status, &none, status);
+        const size_t done = atomic_fetch_add(&task->done, 1) + 1;
         if (worker == 0) {
-            pvtReportProgress(task->context, (double)(i + 1) / (double)task->options->count);
+            pvtReportProgress(task->context, (double)done / (double)task->options->count);
         }
     }
 }
@@ -191,7 +193,11 @@ static pvtStatus CheckOptions(pvtContext* context, const pvtSilhouetteOptions* o
 static pvtStatus DrawSoups(pvtContext* context, const pvtSilhouetteOptions* options,
                            const pvtSoup soups[2], pvtImage* images)
 {
-    SilhouetteTask task = {context, options, &soups[0], &soups[1], NULL, images, PVT_OK};
+    SilhouetteTask task = {.context = context,
+                           .options = options,
+                           .original = &soups[0],
+                           .occluder = &soups[1],
+                           .images = images};
     pvtStatus status = PVT_OK;
     for (size_t i = 0; i < options->count && status == PVT_OK; ++i) {
         status = pvtCreateImage(context, options->width, options->height, &images[i]);
