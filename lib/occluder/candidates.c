@@ -34,7 +34,8 @@ typedef struct CandidateTask {
     pvtBitmap guards[BATCH];
     pvtChainSet chains[BATCH];
     pvtStatus statuses[BATCH];
-    double minArea; // [vx²] in the plane
+    double minArea;              // [vx²] in the plane
+    size_t pointRoom, chainRoom; // of the set's arrays
 } CandidateTask;
 
 static pvtStatus CreateSliceBitmap(pvtContext* context, const pvtGridFrame* frame,
@@ -139,10 +140,16 @@ static void RunCandidateTask(size_t begin, size_t end, int worker, void* taskDat
     }
 }
 
-// Makes room for so many points and chains in all.
-static pvtStatus GrowCandidates(pvtContext* context, pvtCandidateSet* set, size_t points,
+// Makes room for so many points and chains in all, at least twice what there was: a copy a batch
+// would take time that grows with the square of their number.
+static pvtStatus GrowCandidates(CandidateTask* task, pvtCandidateSet* set, size_t points,
                                 size_t chains)
 {
+    if (set->chains.starts != NULL && points <= task->pointRoom && chains <= task->chainRoom) {
+        return PVT_OK;
+    }
+    points = points > 2 * task->pointRoom ? points : 2 * task->pointRoom;
+    chains = chains > 2 * task->chainRoom ? chains : 2 * task->chainRoom;
     struct {
         void** memory;
         size_t count, size;
@@ -155,12 +162,14 @@ static pvtStatus GrowCandidates(pvtContext* context, pvtCandidateSet* set, size_
         {(void**)&set->triangles, chains, sizeof *set->triangles},
     };
     for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
-        void* grown = pvtReallocate(context, *parts[i].memory, parts[i].count, parts[i].size);
+        void* grown = pvtReallocate(task->context, *parts[i].memory, parts[i].count, parts[i].size);
         if (grown == NULL) {
-            return pvtContext_GetStatus(context);
+            return pvtContext_GetStatus(task->context);
         }
         *parts[i].memory = grown;
     }
+    task->pointRoom = points;
+    task->chainRoom = chains;
     return PVT_OK;
 }
 
@@ -174,8 +183,7 @@ static int32_t GetLongestLink(const pvtChainSet* chains, size_t chain)
 }
 
 // Appends the batch's chains, in order.
-static pvtStatus AppendChains(pvtContext* context, const CandidateTask* task, size_t count,
-                              pvtCandidateSet* set)
+static pvtStatus AppendChains(CandidateTask* task, size_t count, pvtCandidateSet* set)
 {
     size_t points = set->chains.pointCount;
     size_t chains = set->chains.count;
@@ -183,8 +191,9 @@ static pvtStatus AppendChains(pvtContext* context, const CandidateTask* task, si
         points += task->chains[slot].pointCount;
         chains += task->chains[slot].count;
     }
-    if (GrowCandidates(context, set, points, chains) != PVT_OK) {
-        return pvtContext_GetStatus(context);
+    const pvtStatus status = GrowCandidates(task, set, points, chains);
+    if (status != PVT_OK) {
+        return status;
     }
     pvtChainSet* to = &set->chains;
     for (size_t slot = 0; slot < count; ++slot) {
@@ -230,7 +239,7 @@ static pvtStatus RunBatch(pvtContext* context, CandidateTask* task, pvtCandidate
         status = task->statuses[slot];
     }
     if (status == PVT_OK) {
-        status = AppendChains(context, task, count, set);
+        status = AppendChains(task, count, set);
     }
     for (size_t slot = 0; slot < count; ++slot) {
         pvtChainSet_Free(context, &task->chains[slot]);
@@ -259,7 +268,9 @@ pvtStatus pvtBuildCandidates(pvtContext* context, const pvtCandidateOptions* opt
     pvtStatus status = PVT_OK;
     for (; task->first < sections->count && status == PVT_OK; task->first += BATCH) {
         status = RunBatch(context, task, candidates);
-        pvtReportProgress(context, (double)task->first / (double)sections->count);
+        const size_t done = task->first + BATCH;
+        pvtReportProgress(context,
+                          done < sections->count ? (double)done / (double)sections->count : 1.0);
     }
     for (size_t slot = 0; slot < BATCH; ++slot) {
         pvtBitmap_Free(context, &task->bitmaps[slot]);
