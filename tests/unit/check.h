@@ -13,6 +13,16 @@
 #include <math.h>
 #include <paravent/base.h>
 #include <stdio.h>
+#include <time.h>
+
+/// [s] What the process has worked so far, on all threads together: what a test may hold against a
+/// bound, however busy the machine is with other things.
+static inline double GetCpuSeconds(void)
+{
+    struct timespec now;
+    assert_int_equal(clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now), 0);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 /// Fails with the context's message when `call` is not PVT_OK.
 #define CHECK_OK(context, call)                                                                    \

@@ -361,7 +361,8 @@ static void decoding_stops_when_asked(void** state)
     assert_int_equal(pvtLoadModel(context, NULL, InFolder(&f->folder, "model.glb"), &model),
                      PVT_CANCELLED);
     (void)clock_gettime(CLOCK_MONOTONIC, &after);
-    assert_true(after.tv_sec - begin.tv_sec < 5);
+    // Half of what the decoder would sleep, for a machine that is busy with other things.
+    assert_true(after.tv_sec - begin.tv_sec < 30);
     assert_int_equal(unsetenv("PARAVENT_MODULE_PATH"), 0);
     DestroyTestContext(context);
     FreeCube(cube);

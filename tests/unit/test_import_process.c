@@ -218,7 +218,8 @@ static void an_importer_that_never_ends_is_killed_when_cancelled(void** state)
     assert_int_equal(pvtLoadModel(context, NULL, InFolder(&f->folder, "a.obj"), &f->model),
                      PVT_CANCELLED);
     (void)clock_gettime(CLOCK_MONOTONIC, &after);
-    assert_true(after.tv_sec - before.tv_sec < 10);
+    // Half of what the importer would sleep, for a machine that is busy with other things.
+    assert_true(after.tv_sec - before.tv_sec < 50);
     DestroyTestContext(context);
 }
 
