@@ -52,17 +52,12 @@ compare "$(stat_of stats.json inside_fraction)" ">" "2 * $open"
 made "$models/house.glb" --resolution 48 --enclosed 16
 compare "$(stat_of stats.json inside_fraction)" ">=" "$open"
 
-# The sheet lies level: below it is inside with y up, and with x up next to nothing else is.
+# The sheet lies level: below it is inside with y up, and with x up much less is.
 made "$models/sheet.glb" --resolution 32 --terrain
 level="$(stat_of stats.json inside_fraction)"
 compare "$level" ">" 0
-paravent generate "$models/sheet.glb" --resolution 32 --terrain --up x \
-    --views "$here/one_view.txt" -o out.glb --stats stats.json
-if [ "$code" = 0 ]; then
-    holds "--up x changes what is below" test "$(stat_of stats.json inside_fraction)" != "$level"
-else
-    holds "--up x leaves nothing inside" test "$code" = 5
-fi
+made "$models/sheet.glb" --resolution 32 --terrain --up x
+compare "$(stat_of stats.json inside_fraction)" "<" "0.6 * $level"
 
 made "$boulder" --resolution 24 --budget 8 --method paper
 is options.method paper
@@ -105,12 +100,8 @@ name="$(node -e '
     const bytes = require("fs").readFileSync(process.argv[1]);
     const json = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString());
     console.log(json.nodes.find(node => node.mesh !== undefined).name)' "$models/house.glb")"
-paravent generate "$models/house.glb" --node "$name" "${quick[@]}" -o part.glb --stats stats.json
-if [ "$code" = 0 ]; then
-    compare "$(stat_of stats.json triangles_in)" "<" "$whole"
-else
-    holds "--node '$name' is found: $(cat err)" test "$code" = 5
-fi
+made "$models/house.glb" --node "$name"
+compare "$(stat_of stats.json triangles_in)" "<" "$whole"
 for masked in auto opaque skip; do
     made "$boulder" --resolution 16 --masked "$masked"
     is options.masked "$masked"
