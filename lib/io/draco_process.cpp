@@ -208,6 +208,12 @@ void DracoResult::Bind(const pvtLoadJob& job, const std::vector<DracoStream>& st
         pvtDracoMesh found;
         std::memcpy(&found, Take(job, nextMesh, 1, sizeof found).bytes, sizeof found);
         nextMesh += sizeof found;
+        if (stream.faceCount != PVT_DRACO_ANY && found.faceCount != stream.faceCount) {
+            Refuse(job,
+                   "%s: Draco's decoder gave %zu triangles instead of %zu; the data is damaged: %s",
+                   stream.place.c_str(), static_cast<std::size_t>(found.faceCount),
+                   static_cast<std::size_t>(stream.faceCount), kRemedy);
+        }
         DracoMesh mesh;
         mesh.indices = Take(job, found.indices, found.faceCount, 3 * sizeof(std::uint32_t));
         for (std::size_t i = 0; i < stream.ids.size(); ++i) {

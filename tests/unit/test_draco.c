@@ -324,6 +324,9 @@ static void a_decoder_that_lies_is_not_believed(void** state)
             result = sound;
         }
     }
+    result.mesh.faceCount = 11;
+    CheckRefused(f, LoadResult(f, cube, &result), PVT_INVALID_INPUT, "11 triangles instead of 12");
+    result = sound;
     result.attribute.componentCount = 4;
     CheckRefused(f, LoadResult(f, cube, &result), PVT_INVALID_INPUT, "");
     FreeCube(cube);
