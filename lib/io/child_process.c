@@ -19,6 +19,7 @@
 
 enum {
     POLL_MILLISECONDS = 20,
+    GRACE_MILLISECONDS = 1000, // to end in, for a child that has closed its pipe
     FIRST_FREE = 10, // descriptors from here up are out of the way of those that the child gets
 };
 
@@ -125,6 +126,32 @@ static int Spawn(const pvtChildDef* def, const char* program, const Pipes* pipes
     return error;
 }
 
+// Takes the status of a child whose pipe is closed, by its end as a rule: one that lives on is
+// killed. True when that was since the caller cancelled.
+static bool Reap(const pvtLoadJob* job, pid_t child, int* exitStatus)
+{
+    pid_t ended = 0;
+    bool cancelled = false;
+    *exitStatus = 0;
+    for (int waited = 0; waited < GRACE_MILLISECONDS && !cancelled; ++waited) {
+        ended = waitpid(child, exitStatus, WNOHANG);
+        if (ended != 0) {
+            break;
+        }
+        (void)poll(NULL, 0, 1);
+        cancelled = pvtIsCancelled(job->context);
+    }
+    // Where the program ignores SIGCHLD there is no status to be had, and that of a child that had
+    // to be killed says nothing: the result has to speak.
+    if (ended == 0) {
+        (void)kill(child, SIGKILL);
+        while (waitpid(child, exitStatus, 0) < 0 && errno == EINTR) {
+        }
+        *exitStatus = 0;
+    }
+    return cancelled;
+}
+
 // Waits until the child has ended; true when it was killed since the caller cancelled.
 static bool WaitForEnd(const pvtLoadJob* job, const Pipes* pipes, pid_t child, int* exitStatus)
 {
@@ -137,11 +164,7 @@ static bool WaitForEnd(const pvtLoadJob* job, const Pipes* pipes, pid_t child, i
             break;
         }
     }
-    // Where the program ignores SIGCHLD there is no status to be had: the result has to speak.
-    *exitStatus = 0;
-    while (waitpid(child, exitStatus, 0) < 0 && errno == EINTR) {
-    }
-    return cancelled;
+    return Reap(job, child, exitStatus) || cancelled;
 }
 
 static pvtStatus MapOutput(const pvtLoadJob* job, int file, pvtChildResult* result)

@@ -223,6 +223,23 @@ static void an_importer_that_never_ends_is_killed_when_cancelled(void** state)
     DestroyTestContext(context);
 }
 
+// The pipe is closed as if it had ended.
+static void an_importer_that_feigns_its_end_is_killed(void** state)
+{
+    Fixture* f = *state;
+    WriteImporter(f, "exec 5>&-\nexec sleep 100");
+    struct timespec before, after;
+    (void)clock_gettime(CLOCK_MONOTONIC, &before);
+    assert_int_equal(Load(f), PVT_INVALID_INPUT);
+    CancelCounter counter = {4};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
+    assert_int_equal(pvtLoadModel(context, NULL, InFolder(&f->folder, "a.obj"), &f->model),
+                     PVT_CANCELLED);
+    (void)clock_gettime(CLOCK_MONOTONIC, &after);
+    assert_true(after.tv_sec - before.tv_sec < 50);
+    DestroyTestContext(context);
+}
+
 static void it_inherits_no_descriptor(void** state)
 {
     Fixture* f = *state;
@@ -264,6 +281,7 @@ int main(void)
         MODULE_TEST(a_result_that_ends_early_is_refused),
         MODULE_TEST(its_text_is_cleaned),
         MODULE_TEST(an_importer_that_never_ends_is_killed_when_cancelled),
+        MODULE_TEST(an_importer_that_feigns_its_end_is_killed),
         MODULE_TEST(it_inherits_no_descriptor),
         MODULE_TEST(an_importer_that_anybody_may_change_is_passed_over),
     };
