@@ -85,13 +85,6 @@ static inline bool pvtSegmentsMeet(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoi
            pvtIsOnSegment(b, c, d);
 }
 
-/// True when the segments cross in one point inside both.
-static inline bool pvtSegmentsCross(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
-{
-    return pvtSign(pvtOrient(a, b, c)) * pvtSign(pvtOrient(a, b, d)) < 0 &&
-           pvtSign(pvtOrient(c, d, a)) * pvtSign(pvtOrient(c, d, b)) < 0;
-}
-
 /// A place where a boundary passes: it comes from `before` and goes on to `after`. What it bounds
 /// lies on its left, in the angle from `after` counter-clockwise to `before`.
 typedef struct pvtPass {

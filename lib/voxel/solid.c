@@ -121,22 +121,3 @@ pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
     pvtReportProgress(context, 1.0);
     return PVT_OK;
 }
-
-pvtStatus pvtSuggestSmallestHole(pvtContext* context, const pvtSolidOptions* options,
-                                 const pvtBitGrid* surface, double* smallestHole)
-{
-    *smallestHole = 0.0;
-    pvtStatus status = CheckOptions(context, options);
-    pvtBitGrid inside = {0};
-    if (status == PVT_OK) {
-        status = pvtFindInside(context, options, surface, &inside);
-    }
-    pvtRemedy remedy = {0};
-    if (status == PVT_OK) {
-        const uint64_t strict = pvtBitGrid_Count(&inside) - pvtBitGrid_Count(surface);
-        status = pvtFindRemedy(context, options, surface, strict, &remedy);
-    }
-    pvtBitGrid_Free(context, &inside);
-    *smallestHole = remedy.ground ? 0.0 : remedy.smallestHole;
-    return status;
-}

@@ -137,6 +137,13 @@ static inline int GetWinding(const pvtPoint2* loop, size_t count, double x, doub
     return winding;
 }
 
+// True when the segments cross in one point inside both.
+static inline bool DoSegmentsCross(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
+{
+    return pvtSign(pvtOrient(a, b, c)) * pvtSign(pvtOrient(a, b, d)) < 0 &&
+           pvtSign(pvtOrient(c, d, a)) * pvtSign(pvtOrient(c, d, b)) < 0;
+}
+
 // No two edges cross inside both: touching is allowed. Quadratic.
 static inline bool HasNoCrossing(const pvtLoopSet* set)
 {
@@ -149,7 +156,7 @@ static inline bool HasNoCrossing(const pvtLoopSet* set)
                 for (size_t b = lb == la ? a + 1 : set->starts[lb]; b < bEnd; ++b) {
                     const pvtPoint2 r = set->points[b];
                     const pvtPoint2 s = set->points[b + 1 < bEnd ? b + 1 : set->starts[lb]];
-                    if (pvtSegmentsCross(p, q, r, s)) {
+                    if (DoSegmentsCross(p, q, r, s)) {
                         return false;
                     }
                 }

@@ -25,9 +25,6 @@ static pvtRemedy FindRemedy(pvtContext* context, const pvtBitGrid* surface, pvtS
     pvtSolid solid;
     CHECK_OK(context, pvtFillSolid(context, &options, surface, &solid));
     const pvtRemedy remedy = solid.remedy;
-    double hole;
-    CHECK_OK(context, pvtSuggestSmallestHole(context, &options, surface, &hole));
-    assert_true(hole == (remedy.ground ? 0.0 : remedy.smallestHole));
     pvtSolid_Free(context, &solid);
     return remedy;
 }

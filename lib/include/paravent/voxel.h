@@ -91,12 +91,6 @@ PVT_API pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* optio
                                const pvtBitGrid* surface, pvtSolid* solid);
 PVT_API void pvtSolid_Free(pvtContext* context, pvtSolid* solid);
 
-/// A smallest hole [wu] at which a hollow solid would fill, tried at growing sizes up to a quarter
-/// of the longest side; 0 when none does by itself, or when the solid is not hollow. The remedy in
-/// a pvtSolid is the same and costs nothing more.
-PVT_API pvtStatus pvtSuggestSmallestHole(pvtContext* context, const pvtSolidOptions* options,
-                                         const pvtBitGrid* surface, double* smallestHole);
-
 /// Where an occluder may lie. tolerance 0: the strict interior. Above 0: the solid with its touched
 /// voxels, and every voxel whose centre is within `tolerance` [wu] of the centre of one of those.
 PVT_API pvtStatus pvtMakeAllowedGrid(pvtContext* context, const pvtSolid* solid, double tolerance,
