@@ -138,35 +138,3 @@ pvtBox3 pvtMesh_GetBounds(const pvtMesh* mesh)
     }
     return boxes[0];
 }
-
-// Copies `part` behind what `whole` holds already; the counts say where that ends.
-static void CopyPart(pvtMesh* whole, const pvtMesh* part, size_t position, size_t triangle)
-{
-    if (part->positionCount > 0) {
-        memcpy(whole->positions + position, part->positions,
-               part->positionCount * sizeof *part->positions);
-    }
-    for (size_t i = 0; i < 3 * part->triangleCount; ++i) {
-        whole->indices[3 * triangle + i] = part->indices[i] + (uint32_t)position;
-    }
-}
-
-pvtStatus pvtMesh_Append(pvtContext* context, pvtMesh* mesh, const pvtMesh* other)
-{
-    const size_t positionCount = mesh->positionCount + other->positionCount;
-    const size_t triangleCount = mesh->triangleCount + other->triangleCount;
-    pvtStatus status = pvtCheckMeshCounts(context, positionCount, triangleCount);
-    if (status != PVT_OK) {
-        return status;
-    }
-    pvtMesh whole;
-    status = AllocateMesh(context, positionCount, triangleCount, &whole);
-    if (status != PVT_OK) {
-        return status;
-    }
-    CopyPart(&whole, mesh, 0, 0);
-    CopyPart(&whole, other, mesh->positionCount, mesh->triangleCount);
-    pvtMesh_Free(context, mesh);
-    *mesh = whole;
-    return PVT_OK;
-}

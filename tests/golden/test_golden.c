@@ -3,6 +3,7 @@
 // that depends on the number of threads is a mistake in any case.
 //   test_golden hashes.txt            compares
 //   test_golden hashes.txt --update   writes what is found
+#include "append.h"
 #include "check.h"
 
 #include "recipe_mesh.h"
@@ -277,7 +278,7 @@ static void RunBuild(Run* run, const char* stage, pvtMethod method, pvtMesh* occ
         hash = HashPlane(hash, &built.planes[i]);
     }
     Trail_Add(run->trail, stage, HashDouble(hash, built.measure));
-    CHECK_OK(context, pvtMesh_Append(context, occluder, &built.mesh));
+    CHECK_OK(context, AppendMesh(context, occluder, &built.mesh));
     pvtOccluder_Free(context, &built);
 }
 

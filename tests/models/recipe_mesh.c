@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "recipe_mesh.h"
 
+#include "append.h"
 #include "recipes.h"
 
 #include <stdlib.h>
@@ -36,7 +37,7 @@ static pvtStatus AppendNode(pvtContext* context, const Model* model, const Node*
                                &part);
     }
     if (status == PVT_OK) {
-        status = pvtMesh_Append(context, mesh, &part);
+        status = AppendMesh(context, mesh, &part);
     }
     pvtMesh_Free(context, &part);
     free(indices);

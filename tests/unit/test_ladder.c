@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "append.h"
 #include "perspective.h"
 #include "voxel_shapes.h"
 
@@ -12,7 +13,7 @@ static void MakeFence(pvtContext* context, pvtMesh* mesh)
     for (int i = 0; i < 8; ++i) {
         pvtMesh bar;
         MakeBoxMesh(context, (pvtVec3){x, 0, 0}, (pvtVec3){x + 0.5, 3, 0.8}, &bar);
-        CHECK_OK(context, pvtMesh_Append(context, mesh, &bar));
+        CHECK_OK(context, AppendMesh(context, mesh, &bar));
         pvtMesh_Free(context, &bar);
         x += 0.55 + 0.05 * i;
     }

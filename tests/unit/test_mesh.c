@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "append.h"
 #include "voxel_shapes.h"
 
 #include <math.h>
@@ -102,7 +103,7 @@ static void welding_a_soup_gives_each_lattice_point_once(void** state)
     DestroyTestContext(context);
 }
 
-static void appending_keeps_both_and_moves_indices(void** state)
+static void joining_keeps_both_and_moves_indices(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(1);
@@ -110,7 +111,7 @@ static void appending_keeps_both_and_moves_indices(void** state)
     pvtMesh other;
     MakeBoxMesh(context, (pvtVec3){0.0, 0.0, 0.0}, (pvtVec3){1.0, 1.0, 1.0}, &mesh);
     MakeBoxMesh(context, (pvtVec3){5.0, 0.0, 0.0}, (pvtVec3){6.0, 1.0, 1.0}, &other);
-    CHECK_OK(context, pvtMesh_Append(context, &mesh, &other));
+    CHECK_OK(context, AppendMesh(context, &mesh, &other));
     assert_int_equal(mesh.positionCount, 16);
     assert_int_equal(mesh.triangleCount, 24);
     for (int i = 0; i < 36; ++i) {
@@ -177,7 +178,7 @@ static void a_wall_keeps_its_own_direction_beside_slanted_trim(void** state)
     pvtMesh trim;
     MakeBoxMesh(context, (pvtVec3){0.0, 0.0, 0.0}, (pvtVec3){0.0, 5.0, 5.0}, &mesh);
     MakeArc(context, 0.03, 0.1, 70, &trim);
-    CHECK_OK(context, pvtMesh_Append(context, &mesh, &trim));
+    CHECK_OK(context, AppendMesh(context, &mesh, &trim));
     const pvtFaceDirectionOptions options = pvtDefaultFaceDirectionOptions();
     pvtFaceDirectionSet set;
     CHECK_OK(context, pvtFindFaceDirections(context, &options, &mesh, &set));
@@ -292,7 +293,7 @@ static pvtStatus WorkOnMeshes(pvtContext* context, const void* data)
         status = pvtWeldMesh(context, &mesh, &welded);
     }
     if (status == PVT_OK) {
-        status = pvtMesh_Append(context, &welded, &mesh);
+        status = AppendMesh(context, &welded, &mesh);
         assert_int_equal(welded.triangleCount, status == PVT_OK ? 2 : 1);
     }
     if (status == PVT_OK) {
@@ -319,7 +320,7 @@ int main(void)
         cmocka_unit_test(bounds_hold_what_triangles_use),
         cmocka_unit_test(welding_merges_equal_positions_in_order_of_first_use),
         cmocka_unit_test(welding_a_soup_gives_each_lattice_point_once),
-        cmocka_unit_test(appending_keeps_both_and_moves_indices),
+        cmocka_unit_test(joining_keeps_both_and_moves_indices),
         cmocka_unit_test(a_box_faces_its_three_axes_with_the_area_of_both_sides),
         cmocka_unit_test(a_wall_keeps_its_own_direction_beside_slanted_trim),
         cmocka_unit_test(directions_of_a_curved_surface_are_spread_and_bounded),

@@ -31,9 +31,6 @@ PVT_API pvtBox3 pvtMesh_GetBounds(const pvtMesh* mesh);
 /// first use.
 PVT_API pvtStatus pvtWeldMesh(pvtContext* context, const pvtMesh* mesh, pvtMesh* welded);
 
-/// Adds `other`'s triangles behind those of `mesh`; on failure `mesh` is as it was.
-PVT_API pvtStatus pvtMesh_Append(pvtContext* context, pvtMesh* mesh, const pvtMesh* other);
-
 /// A mesh and where it stands. The transform has 16 numbers, column after column; null: none.
 typedef struct pvtPlacedMesh {
     const pvtMesh* mesh;
