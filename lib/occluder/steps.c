@@ -12,7 +12,8 @@
 enum {
     MIN_RESOLUTION = 8,
     MAX_RESOLUTION = 2048,
-    SELECT_VIEWS = 24,
+    SELECT_VIEWS = 48,
+    FAST_SELECT_VIEWS = 24,
     FAST_DIRECTIONS = 16, // a third of the candidates: in a short search the others hardly count
     FAST_DEPTHS = 16,
     MAX_REFINED = 512, // triangles: beyond, panels are so many that single moves hardly count
@@ -355,7 +356,8 @@ static pvtStatus Choose(pvtContext* context, pvtBuild* build, const pvtViewOptio
                         pvtCut* cut)
 {
     pvtViewOptions few = *views;
-    few.count = few.count < SELECT_VIEWS ? few.count : SELECT_VIEWS;
+    const int most = build->options->effort == PVT_EFFORT_FAST ? FAST_SELECT_VIEWS : SELECT_VIEWS;
+    few.count = few.count < most ? few.count : most;
     pvtViewSet set;
     pvtStatus status = pvtMakeViews(context, &few, &set);
     if (status == PVT_OK) {
