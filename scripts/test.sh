@@ -64,8 +64,9 @@ stage_shared() {
 stage_core() { build_preset core && run_ctest core -E '^header_'; }
 # What compares runs of the command with each other, or measures it, need not run in slow motion.
 stage_asan() { build_preset asan && run_ctest asan -E '^cli_(threads|bench_speed)$'; }
-# test_golden runs every stage and the whole build on one, two and four threads.
-stage_tsan() { build_preset tsan && run_ctest tsan -E '^test_build$'; }
+# test_golden runs every stage and the whole build on one, two and four threads, and
+# test_sheet_threads does so where there is no inside.
+stage_tsan() { build_preset tsan && run_ctest tsan -E '^test_(build|sheets)$'; }
 stage_tidy() { BUILD=build/release scripts/tidy.sh; }
 
 scripts/setup.sh test || exit

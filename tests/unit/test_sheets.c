@@ -422,35 +422,6 @@ static void crumbs_have_no_occluder_and_the_message_names_remedies(void** state)
     DestroyTestContext(context);
 }
 
-static void threads_do_not_change_a_sheet(void** state)
-{
-    (void)state;
-    pvtContext* keeper = CreateTestContext(1);
-    Outcome first = {.recall = 0.0};
-    for (int threads = 1; threads <= 4; threads *= 2) {
-        pvtContext* context = threads == 1 ? keeper : CreateTestContext(threads);
-        Soup soup = {.count = 0};
-        AddWallWithDoor(&soup);
-        AddQuad(&soup, (pvtVec3){-4, 4, 0}, (pvtVec3){4, 4, 0}, (pvtVec3){4, 6, 3},
-                (pvtVec3){-4, 6, 3});
-        pvtMesh mesh = MakeMesh(context, &soup);
-        const pvtBuildOptions options = GetQuickOptions(10);
-        Outcome outcome = Build(context, &options, &mesh);
-        pvtMesh_Free(context, &mesh);
-        if (threads == 1) {
-            first = outcome;
-            continue;
-        }
-        assert_int_equal(outcome.occluder.mesh.positionCount, first.occluder.mesh.positionCount);
-        assert_memory_equal(outcome.occluder.mesh.positions, first.occluder.mesh.positions,
-                            first.occluder.mesh.positionCount * sizeof(pvtVec3));
-        pvtOccluder_Free(context, &outcome.occluder);
-        DestroyTestContext(context);
-    }
-    pvtOccluder_Free(keeper, &first.occluder);
-    DestroyTestContext(keeper);
-}
-
 static bool StopAfterAWhile(void* user)
 {
     int* left = user;
@@ -493,7 +464,6 @@ int main(void)
         cmocka_unit_test(surface_with_an_inside_behind_it_needs_no_sheets),
         cmocka_unit_test(the_check_finds_what_does_not_lie_on_the_surface),
         cmocka_unit_test(crumbs_have_no_occluder_and_the_message_names_remedies),
-        cmocka_unit_test(threads_do_not_change_a_sheet),
         cmocka_unit_test(a_cancelled_build_of_a_sheet_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
