@@ -18,6 +18,8 @@
 // Here both ways take about the same time.
 enum { SQUARED_RADIUS_BY_DISTANCE = 25 * 25 };
 
+enum { CANCEL_INTERVAL = 64 }; // rows of the ball
+
 // A row of the ball: where it lies, and by how many voxels it reaches to either side.
 typedef struct BallRow {
     int y, z, reach;
@@ -130,12 +132,24 @@ static void GatherRow(const Dilation* dilation, int z, BallRow ballRow, RowRange
     rows->end = end > rows->end ? end : rows->end;
 }
 
-static void DilateSlab(const Dilation* dilation, int z)
+static bool ShouldStop(Dilation* dilation)
+{
+    if (pvtIsCancelled(dilation->context)) {
+        atomic_store(&dilation->cancelled, true);
+    }
+    return atomic_load(&dilation->cancelled);
+}
+
+// On a large grid a slab takes seconds: a large ball has as many rows as the grid has itself.
+static void DilateSlab(Dilation* dilation, int z)
 {
     const pvtBitGrid* grid = dilation->grid;
     RowRange rows = {grid->frame.size[1], 0};
     int reach = dilation->ball.rows[0].reach;
     for (size_t i = 0; i < dilation->ball.count; ++i) {
+        if (i % CANCEL_INTERVAL == 0 && ShouldStop(dilation)) {
+            return;
+        }
         const BallRow ballRow = dilation->ball.rows[i];
         GrowRows(dilation, z, rows, reach - ballRow.reach);
         reach = ballRow.reach;
@@ -153,14 +167,8 @@ static void DilateSlabs(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     Dilation* dilation = taskData;
-    for (size_t z = begin; z < end; ++z) {
+    for (size_t z = begin; z < end && !ShouldStop(dilation); ++z) {
         DilateSlab(dilation, (int)z);
-        if (pvtIsCancelled(dilation->context)) {
-            atomic_store(&dilation->cancelled, true);
-        }
-        if (atomic_load(&dilation->cancelled)) {
-            return;
-        }
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include "voxel/dilate.h"
 
+#include "failures.h"
+
 #include <stdlib.h>
 
 enum { MOST_MARKS = 64 };
@@ -162,6 +164,22 @@ static void whole_numbers_of_voxels_count_whatever_the_voxel_size(void** state)
     }
 }
 
+// A slab of a large grid takes seconds when the ball is large: one is not too short to be stopped.
+static void growing_within_one_slab_can_be_cancelled(void** state)
+{
+    (void)state;
+    CancelCounter counter = {2};
+    pvtContext* context = CreateCancelledContext(&counter, 1);
+    pvtBitGrid grid;
+    pvtBitGrid dilated;
+    MakeEmptyGrid(context, 64, 64, 1, &grid);
+    SetVoxel(&grid, 30, 31, 0);
+    assert_int_equal(pvtDilateGrid(context, &grid, 20 * 20, &dilated), PVT_CANCELLED);
+    assert_null(dilated.words);
+    pvtBitGrid_Free(context, &grid);
+    DestroyTestContext(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -169,6 +187,7 @@ int main(void)
         cmocka_unit_test(an_empty_grid_is_beyond_every_limit),
         cmocka_unit_test(growing_by_a_ball_takes_all_voxels_within_the_radius),
         cmocka_unit_test(whole_numbers_of_voxels_count_whatever_the_voxel_size),
+        cmocka_unit_test(growing_within_one_slab_can_be_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

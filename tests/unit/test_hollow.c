@@ -296,6 +296,37 @@ static void the_memory_limit_leaves_the_remedy_out_before_it_fails(void** state)
     assert_true(refused > 0 && without > 0 && with > 0);
 }
 
+// A tube with a slot along it, longer than the grids that are searched. To look whether the slot
+// closed leaves more to do, balls of its width would meet the whole grid: by distances in memory 16
+// times as large as the grid, and without that memory in an hour at 2,048 voxels.
+static void a_fine_grid_is_not_grown_by_large_balls_for_a_remedy(void** state)
+{
+    (void)state;
+    enum { LENGTH = 1160, SIDE = 160, WALL = 8, SLOT = 60 };
+    pvtContext* context = CreateTestContext(2);
+    pvtBitGrid surface;
+    MakeEmptyGrid(context, LENGTH, SIDE, SIDE, &surface);
+    for (int z = WALL; z < SIDE - WALL; ++z) {
+        for (int y = WALL; y < SIDE - WALL; ++y) {
+            const bool isSlot = z == WALL && 2 * abs(y - SIDE / 2) < SLOT;
+            const bool isWall =
+                z == WALL || z == SIDE - WALL - 1 || y == WALL || y == SIDE - WALL - 1;
+            for (int x = WALL; x < LENGTH - WALL; ++x) {
+                const bool isEnd = x == WALL || x == LENGTH - WALL - 1;
+                if (isEnd || (isWall && !isSlot)) {
+                    SetVoxel(&surface, x, y, z);
+                }
+            }
+        }
+    }
+    const size_t bytes = pvtContext_GetHeldBytes(context);
+    const pvtRemedy remedy = FindRemedy(context, &surface, pvtDefaultSolidOptions());
+    assert_true(remedy.smallestHole >= SLOT && remedy.smallestHole <= SLOT + 24.0);
+    assert_true(pvtContext_GetPeakBytes(context) < 8 * bytes);
+    pvtBitGrid_Free(context, &surface);
+    DestroyTestContext(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -308,6 +339,7 @@ int main(void)
         cmocka_unit_test(a_hollow_solid_is_warned_about_with_the_size_that_helps),
         cmocka_unit_test(the_memory_limit_leaves_the_remedy_out_before_it_fails),
         cmocka_unit_test(the_search_survives_failing_allocations_and_cancelling),
+        cmocka_unit_test(a_fine_grid_is_not_grown_by_large_balls_for_a_remedy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
