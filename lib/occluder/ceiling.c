@@ -102,7 +102,8 @@ static pvtVec3 GetMiddle(uint64_t cells)
     pvtVec3 sum = {0};
     for (uint64_t bits = cells; bits != 0; bits &= bits - 1) {
         const int cell = __builtin_ctzll(bits);
-        sum = pvtAdd(sum, (pvtVec3){cell % 4 + 0.5, cell / 4 % 4 + 0.5, cell / 16 + 0.5});
+        const int x = cell % 4, y = cell / 4 % 4, z = cell / 16;
+        sum = pvtAdd(sum, (pvtVec3){x + 0.5, y + 0.5, z + 0.5});
     }
     return pvtScale(sum, 1.0 / pvtCountBits(cells));
 }

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 8 };
+enum { BATCH = 8, ROUNDS = 3 };
 
 typedef struct Trial {
     pvtChange change;
@@ -84,7 +84,7 @@ static pvtStatus RunBatch(pvtContext* context, Refinement* refinement)
 
 // Rounds end after so many trials. A longer search is the shorter one gone on with, so that it is
 // never worse.
-static const double roundEnds[] = {1500.0, 20000.0, HUGE_VAL};
+static const double roundEnds[ROUNDS] = {1500.0, 20000.0, HUGE_VAL};
 
 // One round: large steps and new structure first, small steps at the end. Sets *stop when time is
 // up.
@@ -119,12 +119,14 @@ static pvtStatus Climb(pvtContext* context, Refinement* refinement, double end, 
 static pvtStatus RunRounds(pvtContext* context, Refinement* refinement)
 {
     const double total = refinement->options->trials;
-    pvtStatus status = PVT_OK;
     bool stop = false;
-    for (int r = 0; (double)refinement->next < total && status == PVT_OK && !stop; ++r) {
-        status = Climb(context, refinement, fmin(roundEnds[r], total), &stop);
+    for (int r = 0; r < ROUNDS && (double)refinement->next < total && !stop; ++r) {
+        const pvtStatus status = Climb(context, refinement, fmin(roundEnds[r], total), &stop);
+        if (status != PVT_OK) {
+            return status;
+        }
     }
-    return status;
+    return PVT_OK;
 }
 
 static pvtStatus StorePanels(pvtContext* context, const pvtArrangement* arrangement,
