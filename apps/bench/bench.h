@@ -4,6 +4,7 @@
 #define PVT_BENCH_BENCH_H
 
 #include "command.h"
+#include "generate.h"
 #include "run.h"
 #include "targets.h"
 
@@ -12,20 +13,14 @@
 
 enum { PVT_MOST_MODELS = 64 };
 
-/// What makes an occluder, for every subcommand: the first member of its options struct.
-typedef struct pvtBenchLine {
-    pvtCommonOptions common;
-    int budget, resolution;
-    pvtLength tolerance, smallestHole;
-    bool ground, terrain;
-    int up, enclosed;
-} pvtBenchLine;
+/// What makes an occluder, for every subcommand: the first member of its options struct. Fields
+/// that no option here fills keep their defaults.
+typedef pvtGenerateOptions pvtBenchLine;
 
-/// --budget, --resolution and so on, as of paravent generate.
+/// --budget, --resolution and --tolerance; pvtSolidOptionTable has the others.
 extern const pvtOption pvtBenchOptionTable[];
-enum { PVT_BENCH_OPTION_COUNT = 8 };
+enum { PVT_BENCH_OPTION_COUNT = 3 };
 
-pvtBenchLine pvtDefaultBenchLine(void);
 pvtBuildOptions pvtGetBenchBuildOptions(const pvtBenchLine* line, pvtMethod method);
 
 /// Where an occluder of the mesh may lie, at a resolution that need not be the line's.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the subcommands share: options for occluders, and the grid that they lie in.
 #include "bench.h"
-#include "choices.h"
 
 #include <math.h>
 
@@ -25,51 +24,15 @@ const pvtOption pvtBenchOptionTable[] = {
      .placeholder = "T",
      .most = 1e30,
      .help = "as of paravent generate"},
-    {.name = "smallest-hole",
-     FIELD(PVT_OPTION_LENGTH, smallestHole),
-     .placeholder = "D",
-     .most = 1e30,
-     .help = "as of paravent generate"},
-    {.name = "ground", FIELD(PVT_OPTION_FLAG, ground), .help = "as of paravent generate"},
-    {.name = "terrain", FIELD(PVT_OPTION_FLAG, terrain), .help = "as of paravent generate"},
-    {.name = "up",
-     FIELD(PVT_OPTION_CHOICE, up),
-     .choices = pvtAxisChoices,
-     .help = "as of paravent generate"},
-    {.name = "enclosed",
-     FIELD(PVT_OPTION_INT, enclosed),
-     .placeholder = "T",
-     .least = 0,
-     .most = 25,
-     .defaultText = "off",
-     .help = "as of paravent generate"},
 };
 
 _Static_assert(sizeof pvtBenchOptionTable / sizeof *pvtBenchOptionTable == PVT_BENCH_OPTION_COUNT,
                "the count in bench.h follows the table");
 
-pvtBenchLine pvtDefaultBenchLine(void)
-{
-    const pvtBuildOptions build = pvtDefaultBuildOptions();
-    return (pvtBenchLine){.budget = build.budget,
-                          .resolution = build.resolution,
-                          .tolerance = build.tolerance,
-                          .smallestHole = build.smallestHole,
-                          .up = (int)build.up,
-                          .enclosed = build.enclosed};
-}
-
 pvtBuildOptions pvtGetBenchBuildOptions(const pvtBenchLine* line, pvtMethod method)
 {
-    pvtBuildOptions options = pvtDefaultBuildOptions();
-    options.budget = line->budget;
-    options.resolution = line->resolution;
-    options.tolerance = line->tolerance;
-    options.smallestHole = line->smallestHole;
-    options.ground = line->ground;
-    options.terrain = line->terrain;
-    options.up = (pvtAxis)line->up;
-    options.enclosed = line->enclosed;
+    const pvtViewList none = {0};
+    pvtBuildOptions options = pvtGetBuildOptions(line, &none);
     options.method = method;
     return options;
 }

@@ -34,6 +34,7 @@ static const pvtOption samplingTable[] = {
 
 static const pvtOptionGroup groups[] = {
     {"Occluders", pvtBenchOptionTable, PVT_BENCH_OPTION_COUNT},
+    {"What counts as inside", pvtSolidOptionTable, PVT_SOLID_OPTION_COUNT},
     {"Sampling", samplingTable, sizeof samplingTable / sizeof *samplingTable},
     {"General", pvtCommonOptionTable, PVT_COMMON_OPTION_COUNT},
 };
@@ -53,7 +54,7 @@ static const pvtSyntax syntax = {
 static pvtQualityLine GetDefaultLine(void)
 {
     const pvtEvaluateOptions evaluate = pvtDefaultEvaluateOptions();
-    return (pvtQualityLine){.bench = pvtDefaultBenchLine(),
+    return (pvtQualityLine){.bench = pvtDefaultGenerateOptions(),
                             .views = evaluate.views,
                             .quads = evaluate.quads,
                             .pixels = evaluate.pixels,

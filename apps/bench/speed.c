@@ -30,6 +30,7 @@ static const pvtOption measureTable[] = {
 
 static const pvtOptionGroup groups[] = {
     {"Occluders", pvtBenchOptionTable, PVT_BENCH_OPTION_COUNT},
+    {"What counts as inside", pvtSolidOptionTable, PVT_SOLID_OPTION_COUNT},
     {"Measuring", measureTable, sizeof measureTable / sizeof *measureTable},
     {"General", pvtCommonOptionTable, PVT_COMMON_OPTION_COUNT},
 };
@@ -81,7 +82,7 @@ static int RunLine(void* values, const pvtParsedLine* line)
 static int RunSpeed(int count, char* const* words)
 {
     pvtSpeedLine values = {
-        .bench = pvtDefaultBenchLine(), .repeats = 5, .seconds = 0.2, .paperResolution = 128};
+        .bench = pvtDefaultGenerateOptions(), .repeats = 5, .seconds = 0.2, .paperResolution = 128};
     return pvtRunCommandLine(&syntax, count, words, &values, RunLine);
 }
 
