@@ -98,12 +98,14 @@ pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
         pvtGetFacetBytes(triangles, build->views.count) > MAX_BEND_BYTES) {
         return PVT_OK;
     }
-    static const int trials[] = {
-        [PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 45000, [PVT_EFFORT_BEST] = 400000};
+    // Where some panels are on the surface, the others have had more trials before.
+    static const int trials[2][3] = {
+        {[PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 36000, [PVT_EFFORT_BEST] = 400000},
+        {[PVT_EFFORT_FAST] = 1000, [PVT_EFFORT_DEFAULT] = 24000, [PVT_EFFORT_BEST] = 400000}};
     pvtBendOptions options = {.views = &build->views,
                               .bounds = build->bounds,
                               .seed = build->options->seed,
-                              .trials = trials[build->options->effort],
+                              .trials = trials[build->sheets.count > 0][build->options->effort],
                               .deadline = build->options->deadline > 0.0
                                               ? build->started + build->options->deadline
                                               : 0.0};

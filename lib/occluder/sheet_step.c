@@ -14,10 +14,11 @@ enum { MIN_SHEETS = 128, MAX_SHEETS = 512 };
 
 // [vx] How far the surface may lie from a panel on it. Up to √3 the bound of the strict interior
 // holds for sheets as well. All but the first are for meshes without any.
-static const double DEVIATIONS[] = {0.25, 1.0, 2.0, 4.0};
+static const double DEVIATIONS[] = {0.03125, 0.25, 1.0, 2.0, 4.0};
 static const double BOUND = 1.7320508075688772;
-// Sheets that take this part of the surface need not lie any farther off.
-static const double ENOUGH = 0.5;
+// Sheets that take this part of the surface need not lie any farther off; nearly all of it, where
+// the next step is a small one.
+static const double ENOUGH[] = {0.9, 0.5, 0.5, 0.5};
 
 bool pvtMayUseSheets(const pvtBuild* build)
 {
@@ -106,7 +107,7 @@ pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build)
         most = GetMostDeviation(build);
     }
     for (size_t i = 1; i < sizeof DEVIATIONS / sizeof *DEVIATIONS && status == PVT_OK &&
-                       share < ENOUGH && DEVIATIONS[i] <= most;
+                       share < ENOUGH[i - 1] && DEVIATIONS[i] <= most;
          ++i) {
         status = FindSheets(context, build, DEVIATIONS[i]);
         if (status == PVT_OK) {

@@ -12,8 +12,8 @@
 enum {
     MIN_RESOLUTION = 8,
     MAX_RESOLUTION = 2048,
-    SELECT_VIEWS = 48,
-    FAST_SELECT_VIEWS = 24,
+    SELECT_VIEWS = 36,
+    FAST_SELECT_VIEWS = 16,
     FAST_DIRECTIONS = 16, // a third of the candidates: in a short search the others hardly count
     FAST_DEPTHS = 16,
     MAX_REFINED = 512, // triangles: beyond, panels are so many that single moves hardly count
@@ -394,10 +394,12 @@ static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
         return PVT_OK;
     }
     // Panels within the volume are but a start for what pvtBendStep does. Those on the surface stay
-    // as they are after this.
-    static const int trials[2][3] = {
+    // as they are after this; where there are both, each has its share.
+    static const int trials[3][3] = {
         {[PVT_EFFORT_FAST] = 300, [PVT_EFFORT_DEFAULT] = 3000, [PVT_EFFORT_BEST] = 30000},
+        {[PVT_EFFORT_FAST] = 400, [PVT_EFFORT_DEFAULT] = 5000, [PVT_EFFORT_BEST] = 70000},
         {[PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000}};
+    const int kind = build->sheets.count == 0 ? 0 : build->solid.strictCount > 0 ? 1 : 2;
     const double deadline =
         build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
     const pvtRefineOptions options = {.budget = build->options->budget,
@@ -405,8 +407,7 @@ static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
                                       .bounds = build->bounds,
                                       .sheets = &build->sheets,
                                       .seed = build->options->seed,
-                                      .trials =
-                                          trials[build->sheets.count > 0][build->options->effort],
+                                      .trials = trials[kind][build->options->effort],
                                       .deadline = deadline};
     return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
                              &build->occluder);

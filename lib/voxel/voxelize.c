@@ -20,6 +20,7 @@
 #include "base/context.h"
 #include "base/vector.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <stdatomic.h>
 
@@ -353,6 +354,7 @@ static void MarkTriangles(size_t begin, size_t end, int worker, void* taskData)
 
 static pvtStatus MarkMesh(Voxelizer* voxelizer)
 {
+    assert(voxelizer->frame != NULL);
     pvtContext* context = voxelizer->context;
     const int parts = voxelizer->cells != NULL ? PVT_CELLS : 1;
     voxelizer->scale = parts / voxelizer->frame->voxelSize;

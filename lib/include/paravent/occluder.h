@@ -116,7 +116,7 @@ typedef struct pvtSurfaceReach {
 PVT_API pvtStatus pvtTakeOffSurface(pvtContext* context, const pvtSurfaceReach* reach,
                                     const pvtMesh* surface, const pvtMesh* occluder, pvtMesh* rest);
 
-/// How long the refinement may go on: it tries 1,800, 48,000 or 430,000 changes.
+/// How long the refinement may go on: changes of thousands, of tens and of hundreds of thousands.
 typedef enum pvtEffort { PVT_EFFORT_FAST, PVT_EFFORT_DEFAULT, PVT_EFFORT_BEST } pvtEffort;
 
 typedef struct pvtBuildOptions {
