@@ -92,7 +92,8 @@ static pvtStatus BendUnlessWorse(pvtContext* context, pvtBuild* build,
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
 {
     const size_t triangles = build->occluder.mesh.triangleCount;
-    const bool hasVolume = build->solid.strictCount > 0 || build->stats.tolerance > 0.0;
+    // Where polygons may leave the surface, bending them would use that up for the last pixels.
+    const bool hasVolume = build->solid.strictCount > 0 && build->stats.tolerance == 0.0;
     if (build->options->method == PVT_METHOD_PAPER || !hasVolume || triangles == 0 ||
         triangles > PVT_MAX_FACETS ||
         pvtGetFacetBytes(triangles, build->views.count) > MAX_BEND_BYTES) {

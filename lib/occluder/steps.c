@@ -399,7 +399,8 @@ static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
         {[PVT_EFFORT_FAST] = 300, [PVT_EFFORT_DEFAULT] = 3000, [PVT_EFFORT_BEST] = 30000},
         {[PVT_EFFORT_FAST] = 400, [PVT_EFFORT_DEFAULT] = 5000, [PVT_EFFORT_BEST] = 70000},
         {[PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000}};
-    const int kind = build->sheets.count == 0 ? 0 : build->solid.strictCount > 0 ? 1 : 2;
+    const bool mayBend = build->stats.tolerance == 0.0 && build->solid.strictCount > 0;
+    const int kind = !mayBend ? 2 : build->sheets.count > 0 ? 1 : 0;
     const double deadline =
         build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
     const pvtRefineOptions options = {.budget = build->options->budget,

@@ -47,10 +47,11 @@ static pvtStatus FindBlocked(pvtContext* context, const pvtSolidOptions* options
 }
 
 // [wu] Of the ball. Between the centres of touched voxels an opening is up to a voxel wider than it
-// is: the ball is so much larger than the hole, and all openings narrower than that are closed.
+// is, and half a voxel wider on the average: by so much the ball is larger than the hole.
 static double GetRadius(const pvtSolidOptions* options, const pvtGridFrame* frame)
 {
-    return options->smallestHole > 0.0 ? 0.5 * (options->smallestHole + frame->voxelSize) : 0.0;
+    return options->smallestHole > 0.0 ? 0.5 * (options->smallestHole + 0.5 * frame->voxelSize)
+                                       : 0.0;
 }
 
 // For a surface with margin enough around it.

@@ -229,7 +229,7 @@ static void a_ball_reaches_what_slow_dilation_and_flood_reach(void** state)
     for (int round = 0; round < 12; ++round) {
         pvtSolidOptions options = pvtDefaultSolidOptions();
         options.smallestHole = holes[round % 6];
-        const double radius = 0.5 * (options.smallestHole + 1.0);
+        const double radius = 0.5 * (options.smallestHole + 0.5);
         const double squaredRadius = radius * radius;
         pvtBitGrid surface;
         MakeEmptyGrid(context, 18, 16, 15, &surface);
@@ -293,11 +293,11 @@ static void holes_narrower_than_the_ball_close_and_wider_ones_do_not(void** stat
         MakeOpenBox(context, 8, hole, &surface);
         pvtSolidOptions options = pvtDefaultSolidOptions();
         assert_int_equal(CountStrict(context, &surface, options), 0);
-        // The hole is at least as wide as its free voxels. A ball of that size, and a voxel more,
-        // rests on it, and only what dips in stays outside.
-        options.smallestHole = hole;
+        // The hole is at least as wide as its free voxels. A ball of a voxel more rests on it, and
+        // only what dips in stays outside.
+        options.smallestHole = hole + 0.5;
         assert_true(CountStrict(context, &surface, options) > 12 * 12 * 11);
-        options.smallestHole = fmax(0.0, hole - 1.1);
+        options.smallestHole = fmax(0.0, hole - 0.6);
         assert_true(CountStrict(context, &surface, options) < 12 * 12 * 6);
         pvtBitGrid_Free(context, &surface);
     }

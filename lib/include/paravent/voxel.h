@@ -83,10 +83,10 @@ typedef struct pvtSolid {
 PVT_API pvtSolidOptions pvtDefaultSolidOptions(void);
 
 /// Floods from the border through free voxels, 6-connected; what is not reached is inside.
-/// With smallestHole D only a ball of diameter D plus a voxel can pass: openings narrower than D
-/// are closed, and nothing wider than D plus 5 voxels is ever covered. Warns, with the option that
-/// would help, when a closed-looking mesh comes out hollow, and leaves it in `remedy`. The result
-/// does not depend on how the surface was padded.
+/// With smallestHole D only a ball of diameter D plus half a voxel can pass: openings narrower than
+/// D less half a voxel are closed, and nothing wider than D plus 4 voxels is ever covered. Warns,
+/// with the option that would help, when a closed-looking mesh comes out hollow, and leaves it in
+/// `remedy`. The result does not depend on how the surface was padded.
 PVT_API pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
                                const pvtBitGrid* surface, pvtSolid* solid);
 PVT_API void pvtSolid_Free(pvtContext* context, pvtSolid* solid);
