@@ -15,6 +15,7 @@ enum {
     MAX_BLOCKS = 160, // along the longest side
     MIN_BLOCK = 4,    // [vx]; blocks are powers of two, so that one lies in one word of a row
     MAX_REACH = 255,
+    MAX_CELL_BOX = 8, // [vx] along a side: larger ones seldom pass, unless they are flat
 };
 
 static const double LEAST_PIECE = 1.0 / 24.0; // [vx]
@@ -141,12 +142,25 @@ pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtBitGrid* allowed,
     return PVT_OK;
 }
 
+// As floor and ceil, which are calls on machines without SSE 4.1.
+static int RoundDown(double value)
+{
+    const int whole = (int)value;
+    return whole - (value < whole ? 1 : 0);
+}
+
+static int RoundUp(double value)
+{
+    const int whole = (int)value;
+    return whole + (value > whole ? 1 : 0);
+}
+
 static Range GetRange(const Box* box, double scale)
 {
     Range range;
     for (int axis = 0; axis < 3; ++axis) {
-        range.low[axis] = (int)floor((box->low[axis] + SLACK) * scale);
-        const int high = (int)ceil((box->high[axis] - SLACK) * scale) - 1;
+        range.low[axis] = RoundDown((box->low[axis] + SLACK) * scale);
+        const int high = RoundUp((box->high[axis] - SLACK) * scale) - 1;
         range.high[axis] = high > range.low[axis] ? high : range.low[axis];
     }
     return range;
@@ -229,14 +243,15 @@ static bool IsBoxInside(const pvtInsideTest* test, const Box* box)
         return false;
     }
     return AreVoxelsSet(test->allowed, &voxels) ||
-           (longest < 2 && test->cells != NULL && AreVoxelsOrCellsSet(test, box, &voxels));
+           (longest < MAX_CELL_BOX && test->cells != NULL &&
+            AreVoxelsOrCellsSet(test, box, &voxels));
 }
 
 // A box that is flat and lies between two layers may be in either.
 static bool IsBoxInsideFrom(const pvtInsideTest* test, Box box, int firstAxis)
 {
     for (int axis = firstAxis; axis < 3; ++axis) {
-        const double layer = nearbyint(box.low[axis]);
+        const double layer = RoundDown(box.low[axis] + 0.5);
         if (fabs(box.low[axis] - layer) <= SLACK && fabs(box.high[axis] - layer) <= SLACK) {
             box.low[axis] = box.high[axis] = layer - 2.0 * SLACK;
             if (IsBoxInsideFrom(test, box, axis + 1)) {
@@ -267,9 +282,12 @@ static Box GetBox(const pvtVec3 corners[3], double* side)
         const double a = pvtGetAxis(corners[0], axis);
         const double b = pvtGetAxis(corners[1], axis);
         const double c = pvtGetAxis(corners[2], axis);
-        box.low[axis] = fmin(a, fmin(b, c));
-        box.high[axis] = fmax(a, fmax(b, c));
-        *side = fmax(*side, box.high[axis] - box.low[axis]);
+        // Compared here, since no corner is a NaN: fmin and fmax would be calls.
+        const double low = a < b ? a : b, high = a < b ? b : a;
+        box.low[axis] = low < c ? low : c;
+        box.high[axis] = high > c ? high : c;
+        const double length = box.high[axis] - box.low[axis];
+        *side = length > *side ? length : *side;
     }
     return box;
 }
