@@ -242,9 +242,8 @@ static bool IsBoxInside(const pvtInsideTest* test, const Box* box)
     if (longest > 2 * test->blockSize) {
         return false;
     }
-    return AreVoxelsSet(test->allowed, &voxels) ||
-           (longest < MAX_CELL_BOX && test->cells != NULL &&
-            AreVoxelsOrCellsSet(test, box, &voxels));
+    return AreVoxelsSet(test->allowed, &voxels) || (longest < MAX_CELL_BOX && test->cells != NULL &&
+                                                    AreVoxelsOrCellsSet(test, box, &voxels));
 }
 
 // A box that is flat and lies between two layers may be in either.
