@@ -82,8 +82,7 @@ static pvtStatus RunBatch(pvtContext* context, Refinement* refinement)
     return PVT_OK;
 }
 
-// Rounds end after so many trials. A longer search is the shorter one gone on with, so that it is
-// never worse.
+// Rounds end after so many trials, or with the last; each begins with large steps again.
 static const double roundEnds[ROUNDS] = {1500.0, 20000.0, HUGE_VAL};
 
 // One round: large steps and new structure first, small steps at the end. Sets *stop when time is

@@ -12,6 +12,7 @@
 // is how many of the columns' fractions do. The masks for each of the ways are made when they are
 // first met.
 #include "base/bits.h"
+#include "voxel/cell_grid.h"
 
 #include <assert.h>
 #include <paravent/section.h>
@@ -308,15 +309,8 @@ static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t
     const int x = slicing->axis == PVT_AXIS_X ? at : u;
     const int y = slicing->axis == PVT_AXIS_X ? u : slicing->axis == PVT_AXIS_Y ? at : v;
     const int z = slicing->axis == PVT_AXIS_Z ? at : v;
-    const pvtBitGrid* voxels = &volume->cells->voxels;
-    const size_t row = (size_t)z * (size_t)size[1] + (size_t)y;
-    const size_t word = row * voxels->wordsPerRow + (size_t)x / 64;
-    const uint64_t bit = UINT64_C(1) << (x % 64);
-    if ((voxels->words[word] & bit) == 0) {
-        return 0;
-    }
-    const int before = pvtCountBits(voxels->words[word] & (bit - 1));
-    return volume->cellWords[slicing->axis][volume->cells->ranks[word] + (size_t)before];
+    const size_t index = pvtCellGrid_Find(volume->cells, x, y, z);
+    return index == PVT_NO_CELLS ? 0 : volume->cellWords[slicing->axis][index];
 }
 
 // Which of the 16 patches over a voxel's column (u, v) touch set cells only: bit i + 4 j.

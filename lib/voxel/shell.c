@@ -104,23 +104,33 @@ static uint64_t SpreadAcross(uint64_t cells, int side)
     }
 }
 
-// Cells moved by one, away from a side, across which others come in.
-static uint64_t Move(uint64_t cells, uint64_t beyond, int side)
+// Cells moved by one, away from a side, as far as they stay in the voxel.
+static uint64_t MoveWithin(uint64_t cells, int side)
 {
-    const uint64_t moved[SIDES] = {(cells & ~(FIRST_X << 3)) << 1,
-                                   (cells & ~FIRST_X) >> 1,
-                                   (cells & ~(FIRST_Y << 12)) << 4,
-                                   (cells & ~FIRST_Y) >> 4,
-                                   cells << 16,
-                                   cells >> 16};
-    return moved[side] | SpreadAcross(beyond, side);
+    switch (side) {
+    case 0:
+        return (cells & ~(FIRST_X << 3)) << 1;
+    case 1:
+        return (cells & ~FIRST_X) >> 1;
+    case 2:
+        return (cells & ~(FIRST_Y << 12)) << 4;
+    case 3:
+        return (cells & ~FIRST_Y) >> 4;
+    case 4:
+        return cells << 16;
+    default:
+        return cells >> 16;
+    }
 }
 
 // Cells that have one of these as a neighbour within the voxel.
 static uint64_t Spread(uint64_t cells)
 {
-    return (cells & ~(FIRST_X << 3)) << 1 | (cells & ~FIRST_X) >> 1 |
-           (cells & ~(FIRST_Y << 12)) << 4 | (cells & ~FIRST_Y) >> 4 | cells << 16 | cells >> 16;
+    uint64_t near = 0;
+    for (int side = 0; side < SIDES; ++side) {
+        near |= MoveWithin(cells, side);
+    }
+    return near;
 }
 
 static Waves GetWaves(const Shell* shell, uint32_t voxel)
@@ -215,8 +225,9 @@ static pvtStatus RunWaves(pvtContext* context, Shell* shell)
 // Adds the neighbours on both sides along an axis; the voxels below and above lend theirs.
 static uint64_t Dilate(const uint64_t voxels[3], int axis)
 {
-    return voxels[1] | Move(voxels[1], voxels[0], 2 * axis) |
-           Move(voxels[1], voxels[2], 2 * axis + 1);
+    const int below = 2 * axis, above = 2 * axis + 1;
+    return voxels[1] | MoveWithin(voxels[1], below) | SpreadAcross(voxels[0], below) |
+           MoveWithin(voxels[1], above) | SpreadAcross(voxels[2], above);
 }
 
 // The voxel's cells that are outside or have an outside cell among their 26 neighbours. A plane
