@@ -60,68 +60,59 @@ static pvtStatus MeasureMesh(pvtContext* context, const pvtBuild* build, const p
 }
 
 // What hides more rectangles nearly always has the greater measure, too. Where it has not, the
-// polygons stay as they were: the measure never falls.
-static pvtStatus BendUnlessWorse(pvtContext* context, pvtBuild* build,
-                                 const pvtBendOptions* options)
+// polygons that were selected are taken: the measure never falls.
+static pvtStatus TakeFlatIfBetter(pvtContext* context, pvtBuild* build)
 {
-    pvtOccluder* occluder = &build->occluder;
-    pvtMesh flat;
-    pvtStatus status =
-        pvtCreateMesh(context, occluder->mesh.positions, occluder->mesh.positionCount,
-                      occluder->mesh.indices, occluder->mesh.triangleCount, &flat);
-    double before = 0.0;
-    double after = 0.0;
+    double flat = 0.0;
+    double bent = 0.0;
+    pvtStatus status = MeasureMesh(context, build, &build->flat.mesh, &flat);
     if (status == PVT_OK) {
-        status = MeasureMesh(context, build, &flat, &before);
+        status = MeasureMesh(context, build, &build->occluder.mesh, &bent);
+    }
+    if (status == PVT_OK && bent < flat) {
+        const pvtOccluder worse = build->occluder;
+        build->occluder = build->flat;
+        build->flat = worse;
+    }
+    return status;
+}
+
+static pvtStatus Bend(pvtContext* context, pvtBuild* build)
+{
+    static const int trials[] = {
+        [PVT_EFFORT_FAST] = 200, [PVT_EFFORT_DEFAULT] = 3000, [PVT_EFFORT_BEST] = 60000};
+    pvtBendOptions options = {.views = &build->views,
+                              .bounds = build->bounds,
+                              .seed = build->options->seed,
+                              .trials = trials[build->options->effort],
+                              .deadline = pvtGetDeadline(build)};
+    pvtViewSet more;
+    pvtInsideTest inside = {0};
+    pvtStatus status = MakeMoreViews(context, build, &more);
+    if (status == PVT_OK) {
+        const pvtInterior interior = pvtGetInterior(build);
+        status = pvtCreateInsideTest(context, &interior, &inside);
     }
     if (status == PVT_OK) {
-        status = pvtBendOccluder(context, options, occluder);
+        options.more = &more;
+        options.inside = &inside;
+        status = pvtBendOccluder(context, &options, &build->occluder);
     }
-    if (status == PVT_OK) {
-        status = MeasureMesh(context, build, &occluder->mesh, &after);
-    }
-    if (status == PVT_OK && after < before) {
-        const pvtMesh bent = occluder->mesh;
-        occluder->mesh = flat;
-        flat = bent;
-    }
-    pvtMesh_Free(context, &flat);
+    pvtInsideTest_Free(context, &inside);
+    pvtViewSet_Free(context, &more);
     return status;
 }
 
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
 {
     const size_t triangles = build->occluder.mesh.triangleCount;
-    // Where polygons may leave the surface, bending them would use that up for the last pixels.
-    const bool hasVolume = build->solid.strictCount > 0 && build->stats.tolerance == 0.0;
-    if (build->options->method == PVT_METHOD_PAPER || !hasVolume || triangles == 0 ||
-        triangles > PVT_MAX_FACETS ||
-        pvtGetFacetBytes(triangles, build->views.count) > MAX_BEND_BYTES) {
+    if (!pvtMayAscend(build)) {
         return PVT_OK;
     }
-    // Where some panels are on the surface, the others have had more trials before.
-    static const int trials[2][3] = {
-        {[PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 36000, [PVT_EFFORT_BEST] = 400000},
-        {[PVT_EFFORT_FAST] = 1000, [PVT_EFFORT_DEFAULT] = 24000, [PVT_EFFORT_BEST] = 400000}};
-    pvtBendOptions options = {.views = &build->views,
-                              .bounds = build->bounds,
-                              .seed = build->options->seed,
-                              .trials = trials[build->sheets.count > 0][build->options->effort],
-                              .deadline = build->options->deadline > 0.0
-                                              ? build->started + build->options->deadline
-                                              : 0.0};
-    pvtViewSet more;
-    pvtInsideTest inside = {0};
-    pvtStatus status = MakeMoreViews(context, build, &more);
-    if (status == PVT_OK) {
-        status = pvtCreateInsideTest(context, &build->allowed, &build->cells, &inside);
+    pvtStatus status = PVT_OK;
+    if (triangles <= PVT_MAX_FACETS &&
+        pvtGetFacetBytes(triangles, build->views.count) <= MAX_BEND_BYTES) {
+        status = Bend(context, build);
     }
-    if (status == PVT_OK) {
-        options.more = &more;
-        options.inside = &inside;
-        status = BendUnlessWorse(context, build, &options);
-    }
-    pvtInsideTest_Free(context, &inside);
-    pvtViewSet_Free(context, &more);
-    return status;
+    return status == PVT_OK ? TakeFlatIfBetter(context, build) : status;
 }

@@ -32,9 +32,11 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
         {"chains", pvtChainStep, &build.stats.seconds.chains},
         // The cut through all chains that hides most within the budget.
         {"select", pvtSelectStep, &build.stats.seconds.select},
-        // Panels move, tilt and trade triangles for as long as they hide more.
+        // Panels that may leave the surface move, tilt and trade triangles while they hide more.
         {"refine", pvtRefineStep, &build.stats.seconds.refine},
-        // Triangles leave their planes and follow what is round.
+        // Where all is to stay inside, triangles leave their planes and climb together.
+        {"ascend", pvtAscendStep, &build.stats.seconds.refine},
+        // The last pixels, one triangle at a time.
         {"bend", pvtBendStep, &build.stats.seconds.refine},
         // The promise is checked by other code than that which made it.
         {"check", pvtCheckStep, &build.stats.seconds.check},

@@ -138,7 +138,8 @@ static void ListCells(const pvtCellGrid* grid, int splits, PointList* list)
         for (uint64_t bits = voxels->words[word]; bits != 0; bits &= bits - 1, ++index) {
             const int voxel[3] = {first + __builtin_ctzll(bits), row % voxels->frame.size[1],
                                   row / voxels->frame.size[1]};
-            AddCells(&voxels->frame, voxel, grid->cells[index], splits, list);
+            const uint64_t border = grid->border != NULL ? grid->border[index] : 0;
+            AddCells(&voxels->frame, voxel, grid->cells[index] | border, splits, list);
         }
     }
 }

@@ -2,9 +2,13 @@
 // The promise, checked after the fact: which clear voxels does an occluder reach into? Each
 // triangle, as it is stored, is clipped to slabs of voxels by z, then to rows by y (Sutherland and
 // Hodgman, Reentrant Polygon Clipping, 1974); what is left spans the row's voxels that it touches.
-// Shares nothing with slices, contours or masks.
+// What lies in a border cell is cut by the planes of the surface's triangles there. Shares nothing
+// with slices, masks, or the inside test.
+#include "check.h"
+
 #include "base/context.h"
 #include "base/vector.h"
+#include "voxel/cell_grid.h"
 
 #include <limits.h>
 #include <math.h>
@@ -15,11 +19,17 @@ static const double SLACK = 1.0 / 1024.0;
 
 typedef struct CheckTask {
     pvtContext* context;
-    const pvtBitGrid* allowed;
-    const pvtCellGrid* cells; // may be null
+    pvtInterior interior;
     const pvtMesh* mesh;
     uint64_t* outside; // one a triangle
 } CheckTask;
+
+// What is found of a triangle.
+typedef struct Visit {
+    const pvtInterior* interior;
+    uint64_t outside;
+    bool isAnywhereAllowed;
+} Visit;
 
 // A convex polygon in grid coordinates: a triangle cut by up to ten planes.
 typedef struct Piece {
@@ -93,10 +103,90 @@ static bool IsBoxSet(const Piece* piece, uint64_t cells, const int voxel[3])
     return true;
 }
 
-// Whether a piece of a voxel reaches into one of its clear cells. Coordinates count in cells.
-static bool ReachesClearCell(const Piece* piece, uint64_t cells, const int voxel[3])
+// Where the edges of a convex piece meet a plane; false unless it goes through by more than the
+// slack.
+static bool CutPiece(const Piece* piece, pvtVec3 normal, pvtVec3 on, pvtVec3 chord[2])
 {
-    if (IsBoxSet(piece, cells, voxel)) {
+    double most = 0.0, least = 0.0;
+    int count = 0;
+    for (int i = 0; i < piece->count; ++i) {
+        const pvtVec3 from = piece->points[i], to = piece->points[(i + 1) % piece->count];
+        const double a = pvtDot(normal, pvtSub(from, on)), b = pvtDot(normal, pvtSub(to, on));
+        most = fmax(most, a);
+        least = fmin(least, a);
+        if ((a < 0.0) != (b < 0.0) && count < 2) {
+            chord[count++] = pvtAdd(from, pvtScale(pvtSub(to, from), a / (a - b)));
+        }
+    }
+    return count == 2 && most > SLACK && least < -SLACK;
+}
+
+// Whether a piece goes through a triangle, both in cells.
+static bool GoesThrough(const Piece* piece, const pvtVec3 corners[3])
+{
+    const pvtVec3 normal =
+        pvtNormalize(pvtCross(pvtSub(corners[1], corners[0]), pvtSub(corners[2], corners[0])));
+    pvtVec3 chord[2];
+    if (!CutPiece(piece, normal, corners[0], chord)) {
+        return false;
+    }
+    double begin = 0.0, end = 1.0;
+    for (int k = 0; k < 3; ++k) {
+        const pvtVec3 edge = pvtSub(corners[(k + 1) % 3], corners[k]);
+        const pvtVec3 inward = pvtNormalize(pvtCross(normal, edge));
+        const double a = pvtDot(inward, pvtSub(chord[0], corners[k])) - SLACK;
+        const double b = pvtDot(inward, pvtSub(chord[1], corners[k])) - SLACK;
+        if (a < 0.0 && b < 0.0) {
+            return false;
+        }
+        if (a < 0.0) {
+            begin = fmax(begin, a / (a - b));
+        } else if (b < 0.0) {
+            end = fmin(end, a / (a - b));
+        }
+    }
+    return (end - begin) * pvtLength3(pvtSub(chord[1], chord[0])) > SLACK;
+}
+
+// Whether a piece of a border cell goes through the surface there.
+static bool CrossesSurface(const pvtInterior* interior, const Piece* piece, size_t voxel)
+{
+    const pvtTouching* touching = interior->touching;
+    const pvtGridFrame* frame = &interior->allowed->frame;
+    for (uint32_t i = touching->starts[voxel]; i < touching->starts[voxel + 1]; ++i) {
+        pvtVec3 corners[3];
+        for (size_t k = 0; k < 3; ++k) {
+            const uint32_t corner = touching->mesh->indices[3 * (size_t)touching->triangles[i] + k];
+            corners[k] = pvtScale(pvtSub(touching->mesh->positions[corner], frame->origin),
+                                  PVT_CELLS / frame->voxelSize);
+        }
+        if (GoesThrough(piece, corners)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether a piece is where it may not be in a cell. Coordinates count in cells.
+static bool IsCellLeft(Visit* visit, const Piece* row, int x, size_t voxel, int cell)
+{
+    const pvtCellGrid* cells = visit->interior->cells;
+    if ((cells->cells[voxel] >> cell & 1) != 0) {
+        visit->isAnywhereAllowed = true;
+        return false;
+    }
+    if (visit->interior->touching == NULL || (cells->border[voxel] >> cell & 1) == 0) {
+        return true;
+    }
+    const Piece piece = ClipToSlab(row, 0, x);
+    return CrossesSurface(visit->interior, &piece, voxel);
+}
+
+// Whether a piece of a voxel is where it may not be. Coordinates count in cells.
+static bool IsAnyCellLeft(Visit* visit, const Piece* piece, size_t index, const int voxel[3])
+{
+    if (IsBoxSet(piece, visit->interior->cells->cells[index], voxel)) {
+        visit->isAnywhereAllowed = visit->isAnywhereAllowed || piece->count > 0;
         return false;
     }
     int zs[2];
@@ -113,7 +203,7 @@ static bool ReachesClearCell(const Piece* piece, uint64_t cells, const int voxel
                 const int cell = (x - PVT_CELLS * voxel[0]) +
                                  PVT_CELLS * ((y - PVT_CELLS * voxel[1]) +
                                               PVT_CELLS * (z - PVT_CELLS * voxel[2]));
-                if ((cells >> cell & 1) == 0) {
+                if (IsCellLeft(visit, &row, x, index, cell)) {
                     return true;
                 }
             }
@@ -123,42 +213,49 @@ static bool ReachesClearCell(const Piece* piece, uint64_t cells, const int voxel
 }
 
 // The row's piece in a voxel that is not allowed as a whole.
-static bool IsVoxelLeft(const CheckTask* task, const Piece* row, const int voxel[3])
+static bool IsVoxelLeft(Visit* visit, const Piece* row, const int voxel[3])
 {
-    const uint64_t cells =
-        task->cells != NULL ? pvtCellGrid_Get(task->cells, voxel[0], voxel[1], voxel[2]) : 0;
-    if (cells == 0) {
+    const pvtCellGrid* cells = visit->interior->cells;
+    const int* size = visit->interior->allowed->frame.size;
+    const bool isIn = voxel[0] >= 0 && voxel[1] >= 0 && voxel[2] >= 0 && voxel[0] < size[0] &&
+                      voxel[1] < size[1] && voxel[2] < size[2];
+    const size_t index = cells != NULL && isIn
+                             ? pvtCellGrid_Find(cells, voxel[0], voxel[1], voxel[2])
+                             : PVT_NO_CELLS;
+    if (index == PVT_NO_CELLS) {
         return true;
     }
     Piece piece = ClipToSlab(row, 0, voxel[0]);
     for (int i = 0; i < piece.count; ++i) {
         piece.points[i] = pvtScale(piece.points[i], PVT_CELLS);
     }
-    return ReachesClearCell(&piece, cells, voxel);
+    return IsAnyCellLeft(visit, &piece, index, voxel);
 }
 
-static uint64_t CheckRow(const CheckTask* task, const Piece* row, int y, int z)
+static void CheckRow(Visit* visit, const Piece* row, int y, int z)
 {
-    uint64_t outside = 0;
+    const pvtBitGrid* allowed = visit->interior->allowed;
     int xs[2];
-    GetRange(row, 0, task->allowed->frame.size[0], xs);
+    GetRange(row, 0, allowed->frame.size[0], xs);
     for (int x = xs[0]; x <= xs[1]; ++x) {
-        if (!pvtBitGrid_Get(task->allowed, x, y, z)) {
-            outside += IsVoxelLeft(task, row, (int[3]){x, y, z}) ? 1 : 0;
+        if (pvtBitGrid_Get(allowed, x, y, z)) {
+            visit->isAnywhereAllowed = true;
+        } else {
+            visit->outside += IsVoxelLeft(visit, row, (int[3]){x, y, z}) ? 1 : 0;
         }
     }
-    return outside;
 }
 
 static uint64_t CheckTriangle(const CheckTask* task, size_t triangle)
 {
-    const pvtGridFrame* frame = &task->allowed->frame;
+    const pvtGridFrame* frame = &task->interior.allowed->frame;
     Piece whole = {.count = 3};
     for (int c = 0; c < 3; ++c) {
         const pvtVec3 p = task->mesh->positions[task->mesh->indices[3 * triangle + (size_t)c]];
         whole.points[c] = pvtScale(pvtSub(p, frame->origin), 1.0 / frame->voxelSize);
     }
-    uint64_t outside = 0;
+    Visit visit = {.interior = &task->interior};
+    bool isSeen = false;
     int zs[2];
     GetRange(&whole, 2, frame->size[2], zs);
     for (int z = zs[0]; z <= zs[1] && !pvtIsCancelled(task->context); ++z) {
@@ -167,10 +264,12 @@ static uint64_t CheckTriangle(const CheckTask* task, size_t triangle)
         GetRange(&slab, 1, frame->size[1], ys);
         for (int y = ys[0]; y <= ys[1]; ++y) {
             const Piece row = ClipToSlab(&slab, 1, y);
-            outside += CheckRow(task, &row, y, z);
+            isSeen = isSeen || row.count > 0;
+            CheckRow(&visit, &row, y, z);
         }
     }
-    return outside;
+    // One that is so thin that nothing of it is looked at hides nothing.
+    return visit.outside + (isSeen && !visit.isAnywhereAllowed && visit.outside == 0 ? 1 : 0);
 }
 
 static void CheckTriangles(size_t begin, size_t end, int worker, void* taskData)
@@ -182,7 +281,18 @@ static void CheckTriangles(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
-pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed, const pvtCellGrid* cells,
+pvtStatus pvtCheckTriangles(pvtContext* context, const pvtInterior* interior, const pvtMesh* mesh,
+                            uint64_t* outside)
+{
+    CheckTask task = {.context = context, .interior = *interior, .mesh = mesh, .outside = outside};
+    if (interior->cells != NULL && interior->cells->count == 0) {
+        task.interior.cells = NULL;
+    }
+    pvtParallelFor(context, CheckTriangles, mesh->triangleCount, 1, &task);
+    return pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
+}
+
+pvtStatus pvtCheckOccluder(pvtContext* context, const pvtInterior* interior,
                            const pvtMesh* occluder, uint64_t* outside)
 {
     *outside = 0;
@@ -190,15 +300,10 @@ pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed, const
     if (counts == NULL) {
         return pvtContext_GetStatus(context);
     }
-    CheckTask task = {.context = context,
-                      .allowed = allowed,
-                      .cells = cells != NULL && cells->count > 0 ? cells : NULL,
-                      .mesh = occluder,
-                      .outside = counts};
-    pvtParallelFor(context, CheckTriangles, occluder->triangleCount, 1, &task);
+    const pvtStatus status = pvtCheckTriangles(context, interior, occluder, counts);
     for (size_t t = 0; t < occluder->triangleCount; ++t) {
         *outside += counts[t];
     }
     pvtRelease(context, counts);
-    return pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
+    return status;
 }

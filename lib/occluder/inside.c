@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: MIT
-// A triangle is halved along its longest edge until the box around each piece lies in allowed
-// voxels. Far from the border one look at a coarse grid of distances answers for a large piece; at
-// the border pieces shrink to the size of cells. Nothing is shared with pvtCheckOccluder, which
-// clips instead.
+// A triangle is halved along its longest edge until the box around each piece lies in voxels or
+// cells that are not outside. Far from the border one look at a coarse grid of distances answers
+// for a large piece; at the border pieces shrink to the size of cells. Voxels whose border cells a
+// piece may enter are noted, and the surface in them is looked at last, triangle by triangle.
+// Nothing is shared with pvtCheckOccluder, which clips instead.
 #include "inside.h"
+#include "crossing.h"
 
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
+#include "voxel/cell_grid.h"
 
 #include <math.h>
+#include <string.h>
 
 enum {
     MAX_BLOCKS = 160, // along the longest side
@@ -18,7 +22,9 @@ enum {
     MAX_CELL_BOX = 8, // [vx] along a side: larger ones seldom pass, unless they are flat
 };
 
-static const double LEAST_PIECE = 1.0 / 24.0; // [vx]
+static const double LEAST_PIECE = 1.0 / 24.0;  // [vx]
+static const double CELL_MARGIN = 1.0 / 128.0; // [cells]
+static const double SLAB_SIDE = 6.0;           // [vx] of pieces that are looked at as slabs
 // Boxes are shrunk by this much, so that a face that lies between two voxels is in neither.
 static const double SLACK = 1.0 / 8192.0; // [vx]
 
@@ -33,6 +39,7 @@ typedef struct Range {
 
 void pvtInsideTest_Free(pvtContext* context, pvtInsideTest* test)
 {
+    pvtRelease(context, test->open);
     pvtRelease(context, test->reach);
     *test = (pvtInsideTest){0};
 }
@@ -70,7 +77,7 @@ static void MarkBlocks(pvtInsideTest* test)
                 const Range range = {{x * side, y * side, z * side},
                                      {(x + 1) * side - 1, (y + 1) * side - 1, (z + 1) * side - 1}};
                 test->reach[GetBlockIndex(test, x, y, z)] =
-                    AreVoxelsSet(test->allowed, &range) ? MAX_REACH : 0;
+                    AreVoxelsSet(test->interior.allowed, &range) ? MAX_REACH : 0;
             }
         }
     }
@@ -116,12 +123,13 @@ static void SpreadReach(pvtInsideTest* test)
     }
 }
 
-pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtBitGrid* allowed,
-                              const pvtCellGrid* cells, pvtInsideTest* test)
+pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtInterior* interior, pvtInsideTest* test)
 {
-    *test = (pvtInsideTest){.allowed = allowed,
-                            .cells = cells != NULL && cells->count > 0 ? cells : NULL,
-                            .blockSize = MIN_BLOCK};
+    const pvtBitGrid* allowed = interior->allowed;
+    *test = (pvtInsideTest){.interior = *interior, .blockSize = MIN_BLOCK};
+    if (interior->cells != NULL && interior->cells->count == 0) {
+        test->interior.cells = NULL;
+    }
     const int* size = allowed->frame.size;
     const int longest = size[0] > size[1] ? (size[0] > size[2] ? size[0] : size[2])
                                           : (size[1] > size[2] ? size[1] : size[2]);
@@ -134,8 +142,15 @@ pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtBitGrid* allowed,
         count *= (size_t)test->blocks[axis];
     }
     test->reach = pvtAllocate(context, count, sizeof *test->reach);
-    if (test->reach == NULL) {
+    const pvtCellGrid* cells = test->interior.cells;
+    test->open = cells != NULL ? pvtAllocate(context, cells->count, sizeof *test->open) : NULL;
+    if (test->reach == NULL || (cells != NULL && test->open == NULL)) {
+        pvtInsideTest_Free(context, test);
         return pvtContext_GetStatus(context);
+    }
+    const bool mayEnterBorder = interior->touching != NULL;
+    for (size_t v = 0; cells != NULL && v < cells->count; ++v) {
+        test->open[v] = cells->cells[v] | (mayEnterBorder ? cells->border[v] : 0);
     }
     MarkBlocks(test);
     SpreadReach(test);
@@ -211,15 +226,32 @@ static bool AreCellsSet(uint64_t cells, const Range* range, const int voxel[3])
     return true;
 }
 
+// Those that are not outside, of a voxel within the grid.
+static uint64_t GetCells(const pvtInsideTest* test, const int voxel[3])
+{
+    const size_t index = pvtCellGrid_Find(test->interior.cells, voxel[0], voxel[1], voxel[2]);
+    return index == PVT_NO_CELLS ? 0 : test->open[index];
+}
+
+static bool IsInGrid(const pvtInsideTest* test, const Range* voxels)
+{
+    const int* size = test->interior.allowed->frame.size;
+    return voxels->low[0] >= 0 && voxels->low[1] >= 0 && voxels->low[2] >= 0 &&
+           voxels->high[0] < size[0] && voxels->high[1] < size[1] && voxels->high[2] < size[2];
+}
+
 static bool AreVoxelsOrCellsSet(const pvtInsideTest* test, const Box* box, const Range* voxels)
 {
     const Range cells = GetRange(box, PVT_CELLS);
+    if (!IsInGrid(test, voxels)) {
+        return false;
+    }
     for (int z = voxels->low[2]; z <= voxels->high[2]; ++z) {
         for (int y = voxels->low[1]; y <= voxels->high[1]; ++y) {
             for (int x = voxels->low[0]; x <= voxels->high[0]; ++x) {
                 const int voxel[3] = {x, y, z};
-                if (!pvtBitGrid_Get(test->allowed, x, y, z) &&
-                    !AreCellsSet(pvtCellGrid_Get(test->cells, x, y, z), &cells, voxel)) {
+                if (!pvtBitGrid_Get(test->interior.allowed, x, y, z) &&
+                    !AreCellsSet(GetCells(test, voxel), &cells, voxel)) {
                     return false;
                 }
             }
@@ -242,8 +274,9 @@ static bool IsBoxInside(const pvtInsideTest* test, const Box* box)
     if (longest > 2 * test->blockSize) {
         return false;
     }
-    return AreVoxelsSet(test->allowed, &voxels) || (longest < MAX_CELL_BOX && test->cells != NULL &&
-                                                    AreVoxelsOrCellsSet(test, box, &voxels));
+    return AreVoxelsSet(test->interior.allowed, &voxels) ||
+           (longest < MAX_CELL_BOX && test->interior.cells != NULL &&
+            AreVoxelsOrCellsSet(test, box, &voxels));
 }
 
 // A box that is flat and lies between two layers may be in either.
@@ -291,14 +324,190 @@ static Box GetBox(const pvtVec3 corners[3], double* side)
     return box;
 }
 
-// Its corners are inside.
-static bool IsPieceInside(const pvtInsideTest* test, const pvtVec3 corners[3])
+enum { MOST_NOTED = 2048, NOTED_SLOTS = 4096, SEEN_SLOTS = 2048, BINS = 64 };
+
+// A triangle on its way through the test.
+typedef struct Walk {
+    const pvtInsideTest* test;
+    pvtVec3 outside;            // where it is not inside
+    bool isSomewhereAllowed;    // so that it began inside
+    pvtVec3 normal;             // of its plane, unit
+    double distance;            // of that from the origin
+    double reach;               // of a voxel along the normal, from its middle
+    uint64_t planeCells[BINS];  // of a voxel that the plane passes, by the height of its middle
+    uint64_t knownBins;         // of these
+    uint32_t noted[MOST_NOTED]; // voxels, by their place among those with cells
+    int notedCount;
+    uint32_t slots[NOTED_SLOTS]; // hash table of them: 1 + the voxel
+} Walk;
+
+// False when there are too many.
+static bool NoteVoxel(Walk* walk, size_t voxel)
 {
+    size_t slot = (voxel * 2654435761U) % NOTED_SLOTS;
+    for (; walk->slots[slot] != 0; slot = (slot + 1) % NOTED_SLOTS) {
+        if (walk->slots[slot] == voxel + 1) {
+            return true;
+        }
+    }
+    if (walk->notedCount == MOST_NOTED) {
+        return false;
+    }
+    walk->slots[slot] = (uint32_t)voxel + 1;
+    walk->noted[walk->notedCount++] = (uint32_t)voxel;
+    return true;
+}
+
+// The cells of a voxel that lie in the range.
+static uint64_t GetCellsInRange(const Range* range, const int voxel[3])
+{
+    int low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = range->low[axis] - PVT_CELLS * voxel[axis];
+        high[axis] = range->high[axis] - PVT_CELLS * voxel[axis];
+        low[axis] = low[axis] > 0 ? low[axis] : 0;
+        high[axis] = high[axis] < PVT_CELLS - 1 ? high[axis] : PVT_CELLS - 1;
+    }
+    uint64_t mask = 0;
+    for (int z = low[2]; z <= high[2]; ++z) {
+        for (int y = low[1]; y <= high[1] && low[0] <= high[0]; ++y) {
+            const int row = PVT_CELLS * (y + PVT_CELLS * z);
+            mask |= pvtMakeMask((unsigned)(row + low[0]), (unsigned)(row + high[0] + 1));
+        }
+    }
+    return mask;
+}
+
+// The cells of a voxel that the triangle's plane passes within `slack`; `height` is its middle's
+// above the plane.
+static uint64_t FindCellsInPlane(const Walk* walk, double height, double slack)
+{
+    const pvtVec3 n = walk->normal;
+    const double reach = walk->reach / PVT_CELLS + slack;
+    uint64_t mask = 0;
+    for (int row = 0; row < 16; ++row) {
+        const double y = ((row & 3) - 1.5) / PVT_CELLS, z = ((row >> 2) - 1.5) / PVT_CELLS;
+        const double start = height + n.y * y + n.z * z - 1.5 * n.x / PVT_CELLS;
+        for (int x = 0; x < PVT_CELLS; ++x) {
+            const double at = fabs(start + n.x * x / PVT_CELLS);
+            mask |= (uint64_t)(at <= reach ? 1 : 0) << (4 * row + x);
+        }
+    }
+    return mask;
+}
+
+// The same for all heights in a narrow bin, so that each is found once a triangle.
+static uint64_t GetCellsInPlane(Walk* walk, double height)
+{
+    const double width = 2.0 * (walk->reach + SLACK) / BINS;
+    int bin = (int)((height + walk->reach + SLACK) / width);
+    bin = bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
+    if ((walk->knownBins >> bin & 1) == 0) {
+        const double middle = (bin + 0.5) * width - walk->reach - SLACK;
+        walk->planeCells[bin] = FindCellsInPlane(walk, middle, SLACK + 0.5 * width);
+        walk->knownBins |= UINT64_C(1) << bin;
+    }
+    return walk->planeCells[bin];
+}
+
+// Whether the plane keeps out of outside cells within a box of a few voxels. A plane that follows
+// the border closely does, where boxes would have to be as small as cells.
+static bool IsSlabInside(Walk* walk, const Box* box)
+{
+    const pvtInsideTest* test = walk->test;
+    const pvtCellGrid* grid = test->interior.cells;
+    const Range voxels = GetRange(box, 1.0), cells = GetRange(box, PVT_CELLS);
+    if (!IsInGrid(test, &voxels)) {
+        return false;
+    }
+    for (int z = voxels.low[2]; z <= voxels.high[2]; ++z) {
+        for (int y = voxels.low[1]; y <= voxels.high[1]; ++y) {
+            for (int x = voxels.low[0]; x <= voxels.high[0]; ++x) {
+                const pvtVec3 middle = {x + 0.5, y + 0.5, z + 0.5};
+                const double height = pvtDot(walk->normal, middle) - walk->distance;
+                if (fabs(height) > walk->reach + SLACK ||
+                    pvtBitGrid_Get(test->interior.allowed, x, y, z)) {
+                    continue;
+                }
+                const size_t voxel = grid != NULL ? pvtCellGrid_Find(grid, x, y, z) : PVT_NO_CELLS;
+                const uint64_t open = voxel != PVT_NO_CELLS ? test->open[voxel] : 0;
+                const uint64_t passed =
+                    GetCellsInRange(&cells, (int[3]){x, y, z}) & GetCellsInPlane(walk, height);
+                if ((passed & ~open) != 0) {
+                    return false;
+                }
+                if (test->interior.touching != NULL && voxel != PVT_NO_CELLS &&
+                    (passed & grid->border[voxel]) != 0 && !NoteVoxel(walk, voxel)) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+// Of a box that is not outside, the border cells that are to be looked at.
+static bool NoteBox(Walk* walk, const Box* box)
+{
+    const pvtInterior* interior = &walk->test->interior;
+    const Range voxels = GetRange(box, 1.0), cells = GetRange(box, PVT_CELLS);
+    for (int z = voxels.low[2]; z <= voxels.high[2]; ++z) {
+        for (int y = voxels.low[1]; y <= voxels.high[1]; ++y) {
+            for (int x = voxels.low[0]; x <= voxels.high[0]; ++x) {
+                const int at[3] = {x, y, z};
+                const size_t voxel = pvtCellGrid_Find(interior->cells, x, y, z);
+                if (voxel != PVT_NO_CELLS &&
+                    (interior->cells->border[voxel] & GetCellsInRange(&cells, at)) != 0 &&
+                    !NoteVoxel(walk, voxel)) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
+// Allowed, not only a border cell, and not so close to one that rounding could matter.
+static bool IsPointAllowed(const pvtInsideTest* test, pvtVec3 point)
+{
+    int cell[3], voxel[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double at = PVT_CELLS * pvtGetAxis(point, axis);
+        cell[axis] = RoundDown(at);
+        voxel[axis] = cell[axis] >> 2;
+        if (at - cell[axis] < CELL_MARGIN || at - cell[axis] > 1.0 - CELL_MARGIN) {
+            return false;
+        }
+    }
+    const int bit = (cell[0] & 3) + PVT_CELLS * ((cell[1] & 3) + PVT_CELLS * (cell[2] & 3));
+    return pvtBitGrid_Get(test->interior.allowed, voxel[0], voxel[1], voxel[2]) ||
+           (test->interior.cells != NULL &&
+            (pvtCellGrid_Get(test->interior.cells, voxel[0], voxel[1], voxel[2]) >> bit & 1) != 0);
+}
+
+static void LookForAllowed(Walk* walk, pvtVec3 point)
+{
+    walk->isSomewhereAllowed = walk->isSomewhereAllowed || IsPointAllowed(walk->test, point);
+}
+
+// Its corners are not outside.
+static bool IsPieceInside(Walk* walk, const pvtVec3 corners[3])
+{
+    const pvtInsideTest* test = walk->test;
     double side;
     const Box box = GetBox(corners, &side);
-    if (IsBoxInsideFrom(test, box, 0)) {
+    if (IsDeepInside(test, &box)) {
+        walk->isSomewhereAllowed = true;
         return true;
     }
+    if (side < SLAB_SIDE && IsSlabInside(walk, &box)) {
+        return true;
+    }
+    if (IsBoxInsideFrom(test, box, 0)) {
+        return test->interior.touching == NULL || test->interior.cells == NULL ||
+               NoteBox(walk, &box);
+    }
+    walk->outside = corners[0];
     if (side < LEAST_PIECE) {
         return false;
     }
@@ -315,17 +524,91 @@ static bool IsPieceInside(const pvtInsideTest* test, const pvtVec3 corners[3])
     const pvtVec3 to = corners[(longest + 1) % 3];
     const pvtVec3 across = corners[(longest + 2) % 3];
     const pvtVec3 middle = GetMiddle(from, to);
+    walk->outside = middle;
+    LookForAllowed(walk, middle);
     return pvtInsideTest_HasPoint(test, middle) &&
-           IsPieceInside(test, (pvtVec3[3]){from, middle, across}) &&
-           IsPieceInside(test, (pvtVec3[3]){middle, to, across});
+           IsPieceInside(walk, (pvtVec3[3]){from, middle, across}) &&
+           IsPieceInside(walk, (pvtVec3[3]){middle, to, across});
+}
+
+// Each triangle of the surface once, as long as there are not very many.
+static bool IsSeen(uint32_t* seen, int* count, uint32_t triangle)
+{
+    size_t slot = (triangle * (size_t)2654435761U) % SEEN_SLOTS;
+    for (; seen[slot] != 0; slot = (slot + 1) % SEEN_SLOTS) {
+        if (seen[slot] == triangle + 1) {
+            return true;
+        }
+    }
+    if (*count < SEEN_SLOTS / 2) {
+        seen[slot] = triangle + 1;
+        ++*count;
+    }
+    return false;
+}
+
+static bool CrossesSurface(Walk* walk, const pvtVec3 corners[3])
+{
+    const pvtTouching* touching = walk->test->interior.touching;
+    const pvtCellGrid* cells = walk->test->interior.cells;
+    const pvtGridFrame* frame = &cells->voxels.frame;
+    uint32_t seen[SEEN_SLOTS] = {0};
+    int seenCount = 0;
+    for (int i = 0; i < walk->notedCount; ++i) {
+        const uint32_t voxel = walk->noted[i];
+        for (uint32_t k = touching->starts[voxel]; k < touching->starts[voxel + 1]; ++k) {
+            const uint32_t triangle = touching->triangles[k];
+            if (IsSeen(seen, &seenCount, triangle)) {
+                continue;
+            }
+            pvtVec3 surface[3], ends[2];
+            for (size_t c = 0; c < 3; ++c) {
+                const uint32_t index = touching->mesh->indices[3 * (size_t)triangle + c];
+                surface[c] = pvtScale(pvtSub(touching->mesh->positions[index], frame->origin),
+                                      1.0 / frame->voxelSize);
+            }
+            if (pvtFindCrossing(corners, surface, ends) &&
+                pvtPassesBorder(cells, ends, &walk->outside)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
+                               pvtVec3* outside)
+{
+    Walk walk;
+    walk.test = test;
+    walk.isSomewhereAllowed = false;
+    walk.notedCount = 0;
+    walk.knownBins = 0;
+    memset(walk.slots, 0, sizeof walk.slots);
+    walk.normal =
+        pvtNormalize(pvtCross(pvtSub(corners[1], corners[0]), pvtSub(corners[2], corners[0])));
+    walk.distance = pvtDot(walk.normal, corners[0]);
+    walk.reach = 0.5 * (fabs(walk.normal.x) + fabs(walk.normal.y) + fabs(walk.normal.z));
+    LookForAllowed(&walk, pvtScale(pvtAdd(corners[0], pvtAdd(corners[1], corners[2])), 1.0 / 3.0));
+    bool isInside = true;
+    for (int i = 0; i < 3 && isInside; ++i) {
+        walk.outside = corners[i];
+        LookForAllowed(&walk, corners[i]);
+        isInside = pvtInsideTest_HasPoint(test, corners[i]);
+    }
+    if (isInside) {
+        isInside = IsPieceInside(&walk, corners);
+    }
+    if (isInside && walk.notedCount > 0) {
+        walk.outside = walk.isSomewhereAllowed ? walk.outside : corners[0];
+        isInside = walk.isSomewhereAllowed && !CrossesSurface(&walk, corners);
+    }
+    *outside = walk.outside;
+    return isInside;
 }
 
 bool pvtInsideTest_HasTriangle(const pvtInsideTest* test, const pvtVec3 corners[3])
 {
-    for (int i = 0; i < 3; ++i) {
-        if (!pvtInsideTest_HasPoint(test, corners[i])) {
-            return false;
-        }
-    }
-    return IsPieceInside(test, corners);
+    pvtVec3 outside;
+    return pvtInsideTest_FindOutside(test, corners, &outside);
 }

@@ -1,29 +1,36 @@
 // SPDX-License-Identifier: MIT
-// Whether a triangle, wherever it lies, stays in what is allowed.
+// Whether a triangle, wherever it lies, stays inside.
 #ifndef PVT_OCCLUDER_INSIDE_H
 #define PVT_OCCLUDER_INSIDE_H
 
-#include <paravent/voxel.h>
+#include <paravent/occluder.h>
 
 typedef struct pvtInsideTest {
-    const pvtBitGrid* allowed; ///< borrowed
-    const pvtCellGrid* cells;  ///< borrowed; null: none
-    int blockSize;             ///< [vx]
-    int blocks[3];             ///< along each axis
+    pvtInterior interior;
+    uint64_t* open; ///< of each voxel of interior.cells: cells that are not outside; null: none
+    int blockSize;  ///< [vx]
+    int blocks[3];  ///< along each axis
     uint8_t* reach; ///< one a block: 0 when a voxel of it is clear, else how many blocks away,
                     ///< along the farthest axis, the nearest such block is
 } pvtInsideTest;
 
-/// `cells` may be null. Both stay the caller's.
-pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtBitGrid* allowed,
-                              const pvtCellGrid* cells, pvtInsideTest* test);
+/// What `interior` refers to stays the caller's.
+pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtInterior* interior,
+                              pvtInsideTest* test);
 void pvtInsideTest_Free(pvtContext* context, pvtInsideTest* test);
 
-/// A point in grid coordinates. On the border between voxels it is inside when one of them is.
+/// A point in grid coordinates that is inside or in a border cell. Between voxels it is when one of
+/// them is.
 bool pvtInsideTest_HasPoint(const pvtInsideTest* test, pvtVec3 point);
 
-/// False also when a triangle is inside but passes a clear voxel or cell so closely that telling
-/// them apart would take pieces below 1/24 voxel.
+/// Whether a triangle lies in allowed and border cells, somewhere in an allowed one, and crosses no
+/// triangle of the surface in a border cell. Then none of it is outside, since whoever walks on it
+/// from the inside never passes the surface. False also when it passes an outside cell so
+/// closely that telling them apart would take pieces below 1/24 voxel.
 bool pvtInsideTest_HasTriangle(const pvtInsideTest* test, const pvtVec3 corners[3]);
+/// The same; when it is false, `outside` is a point of the triangle that is not inside, or where it
+/// crosses the surface.
+bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
+                               pvtVec3* outside);
 
 #endif

@@ -17,6 +17,7 @@ void pvtOccluder_Free(pvtContext* context, pvtOccluder* occluder)
 void pvtCut_Free(pvtContext* context, pvtCut* cut)
 {
     pvtRelease(context, cut->triangles);
+    pvtRelease(context, cut->ample);
     *cut = (pvtCut){0};
 }
 

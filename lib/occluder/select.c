@@ -195,11 +195,11 @@ static void GuessOffers(Selection* selection)
     }
 }
 
+// Until the triangles that are left are spent, or nothing gains.
 static pvtStatus RunSelection(Selection* selection)
 {
     pvtContext* context = selection->context;
-    const int budget = selection->options->budget;
-    GuessOffers(selection);
+    const int budget = selection->options->budget + selection->options->surplus;
     while (selection->left > 0) {
         CollectHead(selection);
         if (selection->headCount == 0) {
@@ -229,6 +229,34 @@ pvtStatus pvtCheckSelectOptions(pvtContext* context, const pvtSelectOptions* opt
     return PVT_OK;
 }
 
+static pvtStatus CreateCut(pvtContext* context, size_t count, pvtCut* cut)
+{
+    *cut = (pvtCut){.count = count};
+    cut->triangles = pvtAllocate(context, count, sizeof *cut->triangles);
+    return cut->triangles == NULL ? pvtContext_GetStatus(context) : PVT_OK;
+}
+
+// With a surplus the same selection goes on. What gains nothing will not gain later either.
+static pvtStatus RunWithSurplus(Selection* selection)
+{
+    pvtCut* cut = selection->cut;
+    pvtCut ample;
+    pvtStatus status = CreateCut(selection->context, cut->count, &ample);
+    if (status != PVT_OK) {
+        return status;
+    }
+    memcpy(ample.triangles, cut->triangles, cut->count * sizeof *ample.triangles);
+    cut->ample = ample.triangles;
+    for (size_t c = 0; c < cut->count; ++c) {
+        selection->offers[c].fresh = false;
+    }
+    selection->cut = &ample;
+    selection->left += selection->options->surplus;
+    status = RunSelection(selection);
+    selection->cut = cut;
+    return status;
+}
+
 pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options,
                             const pvtCandidateSet* candidates, pvtCut* cut)
 {
@@ -248,11 +276,18 @@ pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options
         status = pvtCreateScoredMasks(context, &selection.scorer, &selection.covered);
     }
     if (status == PVT_OK) {
-        cut->triangles = pvtAllocate(context, candidates->chains.count, sizeof *cut->triangles);
-        cut->count = candidates->chains.count;
+        status = CreateCut(context, candidates->chains.count, cut);
+    }
+    if (status == PVT_OK) {
         selection.offers = pvtAllocate(context, candidates->chains.count, sizeof *selection.offers);
-        status = cut->triangles == NULL || selection.offers == NULL ? pvtContext_GetStatus(context)
-                                                                    : RunSelection(&selection);
+        status = selection.offers == NULL ? pvtContext_GetStatus(context) : PVT_OK;
+    }
+    if (status == PVT_OK) {
+        GuessOffers(&selection);
+        status = RunSelection(&selection);
+    }
+    if (status == PVT_OK && options->surplus > 0) {
+        status = RunWithSurplus(&selection);
     }
     pvtRelease(context, selection.offers);
     pvtScoredMaskSet_Free(context, &selection.covered);

@@ -6,9 +6,11 @@
 #include "base/context.h"
 #include "base/vector.h"
 #include "ceiling.h"
+#include "check.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MIN_SHEETS = 128, MAX_SHEETS = 512 };
 
@@ -138,18 +140,51 @@ pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build)
                           &build->cells, &build->stats.measureOfSolid);
 }
 
-// What the promise says of panels on the surface: nothing is left of them without it.
+// The triangles that the check objects to; `isOutside` has a count for each.
+static pvtStatus TakeOutside(pvtContext* context, const pvtMesh* occluder,
+                             const uint64_t* isOutside, pvtMesh* outside)
+{
+    uint32_t* indices = pvtAllocate(context, 3 * occluder->triangleCount, sizeof *indices);
+    if (indices == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    size_t count = 0;
+    for (size_t t = 0; t < occluder->triangleCount; ++t) {
+        if (isOutside[t] > 0) {
+            memcpy(indices + 3 * count++, occluder->indices + 3 * t, 3 * sizeof *indices);
+        }
+    }
+    const pvtStatus status = pvtCreateMesh(context, occluder->positions, occluder->positionCount,
+                                           indices, count, outside);
+    pvtRelease(context, indices);
+    return status;
+}
+
+// What the promise says of panels on the surface: nothing is left of them without it, but what lies
+// in allowed voxels and cells.
 static pvtStatus CheckPanels(pvtContext* context, pvtBuild* build)
 {
     pvtBuildStats* stats = &build->stats;
+    const pvtMesh* mesh = &build->occluder.mesh;
     const pvtSurfaceReach reach = {.distance = stats->deviation, .slack = stats->voxelSize / 256.0};
-    pvtMesh rest;
-    pvtStatus status =
-        pvtTakeOffSurface(context, &reach, build->mesh, &build->occluder.mesh, &rest);
+    const pvtInterior all = pvtGetInterior(build);
+    const pvtInterior allowed = {.allowed = all.allowed, .cells = all.cells};
+    uint64_t* isOutside = pvtAllocate(context, mesh->triangleCount, sizeof *isOutside);
+    pvtMesh outside = {0}, rest = {0};
+    pvtStatus status = isOutside == NULL ? pvtContext_GetStatus(context)
+                                         : pvtCheckTriangles(context, &all, mesh, isOutside);
     if (status == PVT_OK) {
-        status = pvtCheckOccluder(context, &build->allowed, &build->cells, &rest, &stats->outside);
-        pvtMesh_Free(context, &rest);
+        status = TakeOutside(context, mesh, isOutside, &outside);
     }
+    if (status == PVT_OK) {
+        status = pvtTakeOffSurface(context, &reach, build->mesh, &outside, &rest);
+    }
+    if (status == PVT_OK) {
+        status = pvtCheckOccluder(context, &allowed, &rest, &stats->outside);
+    }
+    pvtMesh_Free(context, &rest);
+    pvtMesh_Free(context, &outside);
+    pvtRelease(context, isOutside);
     return status;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "steps.h"
 
+#include "ascent.h"
 #include "base/context.h"
 #include "base/vector.h"
 #include "ceiling.h"
@@ -44,6 +45,7 @@ void pvtBuild_Free(pvtContext* context, pvtBuild* build)
     pvtSolid_Free(context, &build->solid);
     pvtBitGrid_Free(context, &build->allowed);
     pvtCellGrid_Free(context, &build->cells);
+    pvtTouching_Free(context, &build->touching);
     pvtSliceVolume_Free(context, &build->volume);
     pvtSliceVolume_Free(context, &build->solidVolume);
     pvtSectionSet_Free(context, &build->sections);
@@ -52,6 +54,7 @@ void pvtBuild_Free(pvtContext* context, pvtBuild* build)
     pvtCandidateSet_Free(context, &build->candidates);
     pvtViewSet_Free(context, &build->views);
     pvtOccluder_Free(context, &build->occluder);
+    pvtOccluder_Free(context, &build->flat);
 }
 
 static double ToWorld(pvtLength length, double voxelSize)
@@ -244,6 +247,9 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
         status = pvtRefineAllowedGrid(context, build->mesh, &build->solid, &build->allowed,
                                       &build->cells);
     }
+    if (status == PVT_OK && build->cells.count > 0 && pvtMayAscend(build)) {
+        status = pvtListTouching(context, build->mesh, &build->cells, &build->touching);
+    }
     if (status == PVT_OK && !FindBounds(&build->allowed, &build->bounds)) {
         build->bounds =
             (pvtBox3){{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
@@ -310,7 +316,9 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
         pvtPlanOptions options = pvtDefaultPlanOptions();
         options.faces = IsPaper(build) ? NULL : &faces;
         options.axes = !IsPaper(build);
-        if (!IsPaper(build) && build->options->effort == PVT_EFFORT_FAST) {
+        // What ascends needs no more than a start, and leaves it far behind.
+        const bool isShort = pvtMayAscend(build) || build->options->effort == PVT_EFFORT_FAST;
+        if (!IsPaper(build) && isShort) {
             options.directions = FAST_DIRECTIONS;
             options.depths = FAST_DEPTHS;
         }
@@ -356,13 +364,16 @@ static pvtStatus Choose(pvtContext* context, pvtBuild* build, const pvtViewOptio
                         pvtCut* cut)
 {
     pvtViewOptions few = *views;
-    const int most = build->options->effort == PVT_EFFORT_FAST ? FAST_SELECT_VIEWS : SELECT_VIEWS;
+    const bool isShort = pvtMayAscend(build) || build->options->effort == PVT_EFFORT_FAST;
+    const int most = isShort ? FAST_SELECT_VIEWS : SELECT_VIEWS;
     few.count = few.count < most ? few.count : most;
     pvtViewSet set;
     pvtStatus status = pvtMakeViews(context, &few, &set);
     if (status == PVT_OK) {
         pvtSelectOptions options = pvtDefaultSelectOptions();
         options.budget = build->options->budget;
+        options.surplus =
+            pvtMayAscend(build) ? pvtGetAscentStart(options.budget) - options.budget : 0;
         options.views = IsPaper(build) ? &build->views : &set;
         options.bounds = build->bounds;
         status = IsPaper(build) ? pvtReduceOccluder(context, &options, &build->candidates, cut)
@@ -384,32 +395,34 @@ pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
     if (status == PVT_OK) {
         status = pvtTakeCut(context, &build->candidates, &cut, &build->occluder);
     }
+    if (status == PVT_OK && cut.ample != NULL) {
+        const pvtCut ample = {.triangles = cut.ample, .count = cut.count};
+        build->flat = build->occluder;
+        status = pvtTakeCut(context, &build->candidates, &ample, &build->occluder);
+    }
     pvtCut_Free(context, &cut);
     return status;
 }
 
+double pvtGetDeadline(const pvtBuild* build)
+{
+    return build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
+}
+
 static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
 {
-    if (IsPaper(build) || build->options->budget > MAX_REFINED) {
+    if (IsPaper(build) || build->options->budget > MAX_REFINED || pvtMayAscend(build)) {
         return PVT_OK;
     }
-    // Panels within the volume are but a start for what pvtBendStep does. Those on the surface stay
-    // as they are after this; where there are both, each has its share.
-    static const int trials[3][3] = {
-        {[PVT_EFFORT_FAST] = 300, [PVT_EFFORT_DEFAULT] = 3000, [PVT_EFFORT_BEST] = 30000},
-        {[PVT_EFFORT_FAST] = 400, [PVT_EFFORT_DEFAULT] = 5000, [PVT_EFFORT_BEST] = 70000},
-        {[PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000}};
-    const bool mayBend = build->stats.tolerance == 0.0 && build->solid.strictCount > 0;
-    const int kind = !mayBend ? 2 : build->sheets.count > 0 ? 1 : 0;
-    const double deadline =
-        build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
+    static const int trials[] = {
+        [PVT_EFFORT_FAST] = 1500, [PVT_EFFORT_DEFAULT] = 20000, [PVT_EFFORT_BEST] = 200000};
     const pvtRefineOptions options = {.budget = build->options->budget,
                                       .views = &build->views,
                                       .bounds = build->bounds,
                                       .sheets = &build->sheets,
                                       .seed = build->options->seed,
-                                      .trials = trials[kind][build->options->effort],
-                                      .deadline = deadline};
+                                      .trials = trials[build->options->effort],
+                                      .deadline = pvtGetDeadline(build)};
     return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
                              &build->occluder);
 }
@@ -417,9 +430,12 @@ static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
 pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
 {
     pvtStatus status = RunRefinement(context, build);
-    if (status == PVT_OK) {
-        status = pvtGrowSheetPanels(context, &build->sheets, build->deviation, build->mesh,
-                                    &build->occluder);
+    pvtOccluder* const occluders[] = {&build->occluder, &build->flat};
+    for (int i = 0; i < 2 && status == PVT_OK; ++i) {
+        if (occluders[i]->loops.loopCount > 0) {
+            status = pvtGrowSheetPanels(context, &build->sheets, build->deviation, build->mesh,
+                                        occluders[i]);
+        }
     }
     return status;
 }
@@ -452,8 +468,8 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
 {
     pvtBuildStats* stats = &build->stats;
-    pvtStatus status = pvtCheckOccluder(context, &build->allowed, &build->cells,
-                                        &build->occluder.mesh, &stats->outside);
+    const pvtInterior interior = pvtGetInterior(build);
+    pvtStatus status = pvtCheckOccluder(context, &interior, &build->occluder.mesh, &stats->outside);
     if (status == PVT_OK) {
         status = pvtCheckSheets(context, build);
     }

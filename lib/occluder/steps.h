@@ -3,6 +3,7 @@
 #ifndef PVT_OCCLUDER_STEPS_H
 #define PVT_OCCLUDER_STEPS_H
 
+#include "inside.h"
 #include "sheets.h"
 
 /// What a build holds on its way; one place to free it.
@@ -13,8 +14,9 @@ typedef struct pvtBuild {
     pvtBuildStats stats;
     pvtBitGrid surface;
     pvtSolid solid;
-    pvtBitGrid allowed;
-    pvtCellGrid cells;          // allowed parts of other voxels         ///< where polygons may lie
+    pvtBitGrid allowed;         ///< where polygons may lie
+    pvtCellGrid cells;          ///< allowed parts of other voxels
+    pvtTouching touching;       ///< the surface in these
     pvtSliceVolume volume;      ///< of `allowed`
     pvtSliceVolume solidVolume; ///< of the solid: what the paper's way slices
     pvtBox3 bounds;             ///< [wu] of the allowed voxels
@@ -27,6 +29,8 @@ typedef struct pvtBuild {
     pvtCandidateSet candidates;
     pvtViewSet views;
     pvtOccluder occluder;
+    pvtOccluder
+        flat; ///< selected for the budget alone, where the occluder is to ascend; else empty
 } pvtBuild;
 
 typedef pvtStatus pvtBuildStep(pvtContext* context, pvtBuild* build);
@@ -39,6 +43,7 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtAscendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
 
@@ -50,6 +55,12 @@ pvtStatus pvtFailNothingInside(pvtContext* context, const pvtBuild* build);
 void pvtWidenBounds(const pvtBitGrid* grid, pvtBox3* bounds);
 /// The measure of everything that may be covered, into the stats; needs the views.
 pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build);
+/// Whether triangles may leave the planes of their polygons.
+bool pvtMayAscend(const pvtBuild* build);
+/// Where triangles may lie.
+pvtInterior pvtGetInterior(const pvtBuild* build);
+/// On pvtGetSeconds' clock; 0: none.
+double pvtGetDeadline(const pvtBuild* build);
 /// Whether a polygon may lie on the surface itself.
 bool pvtMayUseSheets(const pvtBuild* build);
 /// Adds chains on the sheets to the candidates.

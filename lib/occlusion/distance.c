@@ -8,6 +8,8 @@
 // vector width gives the same result. The paper floods on the GPU instead (Rong and Tan, 2006).
 #include "distance.h"
 
+#include "base/vectors.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -15,13 +17,6 @@
 enum {
     BLOCK = 32, // pixels relaxed together
 };
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define VECTOR_CLONES
-#endif
 
 size_t pvtGetDistanceTableCount(int size)
 {
@@ -53,7 +48,7 @@ static uint64_t SpreadBits(uint64_t bits)
     return ((top >> 7) & ones) * 255;
 }
 
-VECTOR_CLONES
+PVT_VECTOR_CLONES
 static void CountDown(uint8_t* restrict row, const uint8_t* restrict above, int size)
 {
     for (int x = 0; x < size; ++x) {
@@ -63,7 +58,7 @@ static void CountDown(uint8_t* restrict row, const uint8_t* restrict above, int 
     }
 }
 
-VECTOR_CLONES
+PVT_VECTOR_CLONES
 static void CountUp(uint8_t* restrict row, const uint8_t* restrict below, int size)
 {
     for (int x = 0; x < size; ++x) {
@@ -96,7 +91,7 @@ void pvtTransformMaskColumns(const uint64_t* rows, int size, uint8_t* columns)
     }
 }
 
-VECTOR_CLONES
+PVT_VECTOR_CLONES
 static void RelaxBlock(const int16_t* squares, int16_t* restrict block)
 {
     int limit = 0;
@@ -123,7 +118,7 @@ static void RelaxBlock(const int16_t* squares, int16_t* restrict block)
     }
 }
 
-VECTOR_CLONES
+PVT_VECTOR_CLONES
 static void SquareRow(const uint8_t* restrict columnRow, int size, int16_t* restrict squares)
 {
     for (int x = 0; x < size; ++x) {

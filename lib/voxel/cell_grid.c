@@ -8,6 +8,7 @@ void pvtCellGrid_Free(pvtContext* context, pvtCellGrid* grid)
     pvtBitGrid_Free(context, &grid->voxels);
     pvtRelease(context, grid->ranks);
     pvtRelease(context, grid->cells);
+    pvtRelease(context, grid->border);
     *grid = (pvtCellGrid){0};
 }
 
@@ -30,12 +31,22 @@ pvtStatus pvtCreateCellGrid(pvtContext* context, pvtBitGrid* voxels, pvtCellGrid
     return PVT_OK;
 }
 
-uint64_t pvtCellGrid_Get(const pvtCellGrid* grid, int x, int y, int z)
+static uint64_t GetWord(const pvtCellGrid* grid, const uint64_t* words, int x, int y, int z)
 {
     const int* size = grid->voxels.frame.size;
-    if (x < 0 || y < 0 || z < 0 || x >= size[0] || y >= size[1] || z >= size[2]) {
+    if (words == NULL || x < 0 || y < 0 || z < 0 || x >= size[0] || y >= size[1] || z >= size[2]) {
         return 0;
     }
     const size_t index = pvtCellGrid_Find(grid, x, y, z);
-    return index == PVT_NO_CELLS ? 0 : grid->cells[index];
+    return index == PVT_NO_CELLS ? 0 : words[index];
+}
+
+uint64_t pvtCellGrid_Get(const pvtCellGrid* grid, int x, int y, int z)
+{
+    return GetWord(grid, grid->cells, x, y, z);
+}
+
+uint64_t pvtCellGrid_GetBorder(const pvtCellGrid* grid, int x, int y, int z)
+{
+    return GetWord(grid, grid->border, x, y, z);
 }

@@ -19,8 +19,12 @@ static const double OFF_MIDDLE = 0.125;
 
 // What a whole run holds at its peak, measured in grids: the solid that follows has three, one more
 // is at work, and sections, chains and polygons take as much again and a little more. To these
-// come bytes for each touched voxel, of which there are about as many as on the sides of the grid.
-enum { GRIDS_OF_A_RUN = 9, BYTES_OF_A_TOUCHED_VOXEL = 100 };
+// come bytes for each touched voxel, of which there are about as many as on the sides of the grid;
+// three for each node of a field, of which there are no more than so many along a side; and what
+// any run holds, however small.
+enum { GRIDS_OF_A_RUN = 9, BYTES_OF_A_TOUCHED_VOXEL = 100, BYTES_OF_A_NODE = 3, MOST_NODES = 272 };
+
+static const double BYTES_OF_ANY_RUN = 4e6;
 
 pvtVoxelizeOptions pvtDefaultVoxelizeOptions(void)
 {
@@ -122,7 +126,12 @@ static double CountBytes(const double size[3])
 static double CountBytesOfRun(const double size[3])
 {
     const double touched = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
-    return GRIDS_OF_A_RUN * CountBytes(size) + BYTES_OF_A_TOUCHED_VOXEL * touched;
+    double nodes = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        nodes *= fmin(size[axis], MOST_NODES);
+    }
+    return GRIDS_OF_A_RUN * CountBytes(size) + BYTES_OF_A_TOUCHED_VOXEL * touched +
+           BYTES_OF_A_NODE * nodes + BYTES_OF_ANY_RUN;
 }
 
 static void CountSides(pvtVec3 extent, double voxelSize, double padding, double size[3])

@@ -39,6 +39,7 @@ typedef struct Shell {
     uint32_t* list;                // those that may in this step
     size_t listCount;
     uint64_t* allowed; // the outcome
+    uint8_t* isOpen;   // whether a voxel is beside one in which the waves meet
 } Shell;
 
 static uint32_t FindNeighbour(const Shell* shell, int x, int y, int z)
@@ -263,6 +264,40 @@ static void JudgeVoxels(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
+// Whether an outside cell of a voxel is next to one that is neither outside nor touched.
+static bool DoWavesMeet(const Shell* shell, size_t voxel)
+{
+    const uint64_t outside = shell->waves[voxel].outside;
+    const uint64_t within = ~shell->touched->cells[voxel] & ~outside;
+    uint64_t near = Spread(within);
+    uint64_t far = Spread(outside);
+    for (int side = 0; side < SIDES; ++side) {
+        const uint32_t beside = shell->neighbours[voxel][side];
+        const uint64_t there = GetWaves(shell, beside).outside;
+        const uint64_t free = beside < INSIDE ? ~shell->touched->cells[beside] : ~UINT64_C(0);
+        near |= SpreadAcross(free & ~there, side);
+        far |= SpreadAcross(there, side);
+    }
+    return ((outside & near) | (within & far)) != 0;
+}
+
+static void FindOpenings(const Shell* shell)
+{
+    for (size_t i = 0; i < shell->touched->count; ++i) {
+        if (!DoWavesMeet(shell, i)) {
+            continue;
+        }
+        const uint16_t* place = shell->places[i];
+        for (int n = 0; n < 27; ++n) {
+            const uint32_t beside = FindNeighbour(shell, place[0] + n % 3 - 1,
+                                                  place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
+            if (beside < INSIDE) {
+                shell->isOpen[beside] = 1;
+            }
+        }
+    }
+}
+
 static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
 {
     const size_t count = shell->touched->count;
@@ -273,22 +308,45 @@ static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
     shell->list = pvtAllocate(context, count, sizeof *shell->list);
     shell->woken = pvtAllocate(context, count, sizeof *shell->woken);
     shell->allowed = pvtAllocate(context, count, sizeof *shell->allowed);
+    shell->isOpen = pvtAllocate(context, count, sizeof *shell->isOpen);
     if (shell->places == NULL || shell->neighbours == NULL || shell->waves == NULL ||
         shell->next == NULL || shell->list == NULL || shell->woken == NULL ||
-        shell->allowed == NULL) {
+        shell->allowed == NULL || shell->isOpen == NULL) {
         return pvtContext_GetStatus(context);
     }
     pvtParallelFor(context, ListLayers, (size_t)shell->touched->voxels.frame.size[2], 4, shell);
     const pvtStatus status = RunWaves(context, shell);
     if (status == PVT_OK) {
         pvtParallelFor(context, JudgeVoxels, count, CANCEL_INTERVAL, shell);
+        FindOpenings(shell);
     }
     return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
 }
 
-static bool IsMixed(uint64_t cells)
+// Not inside, but not outside either. Around an opening there is no border: one could walk around
+// the edge of the surface there, to its other side.
+static uint64_t GetBorder(const Shell* shell, size_t voxel)
 {
-    return cells != 0 && cells != ~UINT64_C(0);
+    return shell->isOpen[voxel] != 0 ? 0 : ~shell->allowed[voxel] & ~shell->waves[voxel].outside;
+}
+
+// Whether anything beside a voxel is inside: else its border is that of a sheet.
+static bool IsBesideInside(const Shell* shell, size_t voxel)
+{
+    for (int side = 0; side < SIDES; ++side) {
+        const uint32_t neighbour = shell->neighbours[voxel][side];
+        if (neighbour == INSIDE || (neighbour < INSIDE && shell->allowed[neighbour] != 0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether a voxel has cells of its own: it is neither inside nor outside as a whole.
+static bool IsMixed(const Shell* shell, size_t voxel)
+{
+    return shell->allowed[voxel] == 0 ? GetBorder(shell, voxel) != 0 && IsBesideInside(shell, voxel)
+                                      : shell->allowed[voxel] != ~UINT64_C(0);
 }
 
 // Whole voxels become allowed; those with some cells are kept with them.
@@ -301,20 +359,26 @@ static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid*
         return pvtContext_GetStatus(context);
     }
     for (size_t i = 0; i < count; ++i) {
-        if (IsMixed(shell->allowed[i])) {
+        if (IsMixed(shell, i)) {
             const uint16_t* place = shell->places[i];
             pvtSetBit(pvtBitGrid_GetRow(&mixed, place[1], place[2]), place[0]);
         }
     }
-    const pvtStatus status = pvtCreateCellGrid(context, &mixed, cells);
+    pvtStatus status = pvtCreateCellGrid(context, &mixed, cells);
+    if (status == PVT_OK) {
+        cells->border = pvtAllocate(context, cells->count, sizeof *cells->border);
+        status = cells->border == NULL ? pvtContext_GetStatus(context) : PVT_OK;
+    }
     if (status != PVT_OK) {
+        pvtCellGrid_Free(context, cells);
         return status;
     }
     // The shell's voxels are in the same order as those that are kept.
     size_t next = 0;
     for (size_t i = 0; i < count; ++i) {
-        if (IsMixed(shell->allowed[i])) {
-            cells->cells[next++] = shell->allowed[i];
+        if (IsMixed(shell, i)) {
+            cells->cells[next] = shell->allowed[i];
+            cells->border[next++] = GetBorder(shell, i);
         } else if (shell->allowed[i] != 0) {
             const uint16_t* place = shell->places[i];
             pvtSetBit(pvtBitGrid_GetRow(allowed, place[1], place[2]), place[0]);
@@ -332,6 +396,7 @@ static void FreeShell(pvtContext* context, Shell* shell)
     pvtRelease(context, shell->list);
     pvtRelease(context, shell->woken);
     pvtRelease(context, shell->allowed);
+    pvtRelease(context, shell->isOpen);
 }
 
 pvtStatus pvtRefineAllowedGrid(pvtContext* context, const pvtMesh* mesh, const pvtSolid* solid,

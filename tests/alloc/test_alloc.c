@@ -209,7 +209,8 @@ static pvtStatus CheckChoice(pvtContext* context, const Stages* stages, const pv
 {
     uint64_t outside = 0;
     double measure = 0.0;
-    pvtStatus status = pvtCheckOccluder(context, &stages->allowed, NULL, occluder, &outside);
+    pvtStatus status =
+        pvtCheckOccluder(context, &(pvtInterior){.allowed = &stages->allowed}, occluder, &outside);
     if (status == PVT_OK) {
         const pvtBox3 bounds = pvtMesh_GetBounds(occluder);
         status = pvtMeasureOcclusion(context, &stages->views, &bounds, 64, occluder, &measure);

@@ -103,7 +103,7 @@ static void triangles_found_inside_pass_the_check(void** state)
     pvtBitGrid grid;
     MakeBall(context, &grid);
     pvtInsideTest test;
-    CHECK_OK(context, pvtCreateInsideTest(context, &grid, NULL, &test));
+    CHECK_OK(context, pvtCreateInsideTest(context, &(pvtInterior){.allowed = &grid}, &test));
     pvtRandom random = pvtMakeRandom(5, 2);
     int inside = 0;
     for (int round = 0; round < 3000; ++round) {
@@ -121,7 +121,8 @@ static void triangles_found_inside_pass_the_check(void** state)
         pvtMesh mesh;
         uint64_t outside = 0;
         CHECK_OK(context, pvtCreateMesh(context, corners, 3, NULL, 1, &mesh));
-        CHECK_OK(context, pvtCheckOccluder(context, &grid, NULL, &mesh, &outside));
+        CHECK_OK(context,
+                 pvtCheckOccluder(context, &(pvtInterior){.allowed = &grid}, &mesh, &outside));
         pvtMesh_Free(context, &mesh);
         assert_true(!isInside || outside == 0);
         // A ball is convex, and its voxels reach no less than a voxel's diagonal less far.
@@ -142,7 +143,7 @@ static void a_flat_triangle_between_two_layers_is_inside_when_one_of_them_is(voi
     MakeEmptyGrid(context, SIDE, SIDE, SIDE, &grid);
     SetBox(&grid, (int[]){10, 10, 10}, (int[]){30, 30, 30});
     pvtInsideTest test;
-    CHECK_OK(context, pvtCreateInsideTest(context, &grid, NULL, &test));
+    CHECK_OK(context, pvtCreateInsideTest(context, &(pvtInterior){.allowed = &grid}, &test));
     static const double layers[] = {10, 20, 30, 9, 31};
     for (int i = 0; i < 5; ++i) {
         const pvtVec3 corners[3] = {{11, layers[i], 12}, {30, layers[i], 10}, {25, layers[i], 30}};
@@ -222,7 +223,7 @@ static void Bend(pvtContext* context, Bent* bent)
     pvtBitGrid grid;
     MakeBall(context, &grid);
     pvtInsideTest inside;
-    CHECK_OK(context, pvtCreateInsideTest(context, &grid, NULL, &inside));
+    CHECK_OK(context, pvtCreateInsideTest(context, &(pvtInterior){.allowed = &grid}, &inside));
     pvtViewSet views;
     pvtViewSet more;
     MakeSomeViews(context, 8, &views);
@@ -246,7 +247,8 @@ static void Bend(pvtContext* context, Bent* bent)
     bent->after[0] = facets.screened;
     bent->after[1] = facets.total;
     pvtFacets_Free(context, &facets);
-    CHECK_OK(context, pvtCheckOccluder(context, &grid, NULL, &bent->occluder.mesh, &bent->outside));
+    CHECK_OK(context, pvtCheckOccluder(context, &(pvtInterior){.allowed = &grid},
+                                       &bent->occluder.mesh, &bent->outside));
     pvtViewSet_Free(context, &views);
     pvtViewSet_Free(context, &more);
     pvtInsideTest_Free(context, &inside);

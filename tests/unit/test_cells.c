@@ -429,10 +429,13 @@ static void the_check_looks_at_every_cell(void** state)
         CHECK_OK(context, pvtCreateMesh(context, corners, 3, NULL, 1, &panel));
         uint64_t outside = 0;
         CHECK_OK(context,
-                 pvtCheckOccluder(context, &inner.allowed, &inner.cells, &panel, &outside));
+                 pvtCheckOccluder(context,
+                                  &(pvtInterior){.allowed = &inner.allowed, .cells = &inner.cells},
+                                  &panel, &outside));
         assert_true((outside > 0) == (longer != 0));
         // Without the cells both end in voxels that are not allowed.
-        CHECK_OK(context, pvtCheckOccluder(context, &inner.allowed, NULL, &panel, &outside));
+        CHECK_OK(context, pvtCheckOccluder(context, &(pvtInterior){.allowed = &inner.allowed},
+                                           &panel, &outside));
         assert_true(outside > 0);
         pvtMesh_Free(context, &panel);
     }

@@ -22,7 +22,7 @@ static uint64_t CountOutside(pvtContext* context, const pvtBitGrid* grid, const 
     pvtMesh mesh;
     CHECK_OK(context, pvtCreateMesh(context, positions, 3, NULL, 1, &mesh));
     uint64_t outside = 0;
-    CHECK_OK(context, pvtCheckOccluder(context, grid, NULL, &mesh, &outside));
+    CHECK_OK(context, pvtCheckOccluder(context, &(pvtInterior){.allowed = grid}, &mesh, &outside));
     pvtMesh_Free(context, &mesh);
     return outside;
 }

@@ -148,7 +148,8 @@ static void CheckWithinLoss(pvtContext* context, const pvtMesh* plain, const pvt
     const double pixel = sqrt(dx * dx + dy * dy + dz * dz) / options.pixels;
     CHECK_NEAR(scores[0].overThickness, 0.0, 0.0);
     CHECK_NEAR(scores[1].overThickness, 0.0, loss > 0.5 * pixel ? loss + pixel : 0.0);
-    CHECK_NEAR(scores[1].uniform.recall, scores[0].uniform.recall, 0.08);
+    // With so few triangles a climb from a little elsewhere may end elsewhere.
+    CHECK_NEAR(scores[1].uniform.recall, scores[0].uniform.recall, 0.15);
     pvtEvaluation_Free(context, &evaluation);
 }
 

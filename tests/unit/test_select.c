@@ -88,8 +88,8 @@ static void every_link_of_every_candidate_stays_in_the_grid(void** state)
             CHECK_OK(context, pvtTakeCut(context, &fixture.candidates, &cut, &occluder));
             assert_int_equal(occluder.mesh.triangleCount, triangles);
             uint64_t outside = 1;
-            CHECK_OK(context,
-                     pvtCheckOccluder(context, &fixture.grid, NULL, &occluder.mesh, &outside));
+            CHECK_OK(context, pvtCheckOccluder(context, &(pvtInterior){.allowed = &fixture.grid},
+                                               &occluder.mesh, &outside));
             assert_true(outside == 0);
             pvtOccluder_Free(context, &occluder);
             pvtCut_Free(context, &cut);
@@ -178,7 +178,8 @@ static void refinement_raises_the_measure_and_keeps_budget_and_promise(void** st
         last = measure;
         assert_true(occluder.mesh.triangleCount <= 14);
         uint64_t outside = 1;
-        CHECK_OK(context, pvtCheckOccluder(context, &fixture.grid, NULL, &occluder.mesh, &outside));
+        CHECK_OK(context, pvtCheckOccluder(context, &(pvtInterior){.allowed = &fixture.grid},
+                                           &occluder.mesh, &outside));
         assert_true(outside == 0);
     }
     assert_true(last > first);

@@ -365,7 +365,7 @@ static void the_memory_limit_names_a_resolution_that_fits(void** state)
 {
     (void)state;
     pvtContextDef def = pvtDefaultContextDef();
-    def.memoryLimit = 8 << 20;
+    def.memoryLimit = 16 << 20;
     def.threadCount = 1;
     pvtContext* context = NULL;
     assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);

@@ -68,6 +68,7 @@ PVT_API void pvtCandidateSet_Free(pvtContext* context, pvtCandidateSet* set);
 typedef struct pvtCut {
     int32_t* triangles; ///< one a candidate
     size_t count;
+    int32_t* ample; ///< the same with a surplus of triangles; null without one
 } pvtCut;
 
 PVT_API void pvtCut_Free(pvtContext* context, pvtCut* cut);
@@ -78,12 +79,14 @@ typedef struct pvtSelectOptions {
     pvtBox3 bounds;          ///< [wu] what the masks span
     double completion;       ///< paper's α as a fraction: stop when a polygon gains less; default
                              ///< 0.01; used by pvtReduceOccluder only
+    int surplus; ///< triangles beyond the budget that the cut's `ample` takes; default 0;
+                 ///< used by pvtSelectOccluder only
 } pvtSelectOptions;
 
 PVT_API pvtSelectOptions pvtDefaultSelectOptions(void);
 
 /// Adds chain levels one after the other, each time the one that gains most of the measure per
-/// triangle, as long as the budget allows.
+/// triangle, as long as the budget allows. With a surplus it goes on from there for cut->ample.
 PVT_API pvtStatus pvtSelectOccluder(pvtContext* context, const pvtSelectOptions* options,
                                     const pvtCandidateSet* candidates, pvtCut* cut);
 
@@ -96,13 +99,22 @@ PVT_API pvtStatus pvtReduceOccluder(pvtContext* context, const pvtSelectOptions*
 PVT_API pvtStatus pvtTakeCut(pvtContext* context, const pvtCandidateSet* candidates,
                              const pvtCut* cut, pvtOccluder* occluder);
 
-/// Every polygon of the occluder against the grid, exactly, by code that the optimizer does not
-/// share: `*outside` is the number of clear voxels that some polygon reaches into by more than
-/// 1/1024 voxel. Voxels in `cells` (may be null) count as clear when it reaches into a clear one of
-/// their cells by more than 1/1024 cell.
-PVT_API pvtStatus pvtCheckOccluder(pvtContext* context, const pvtBitGrid* allowed,
-                                   const pvtCellGrid* cells, const pvtMesh* occluder,
-                                   uint64_t* outside);
+/// Where triangles may lie: in allowed voxels, in allowed cells of others, and, where the surface
+/// is known, in border cells as far as that.
+typedef struct pvtInterior {
+    const pvtBitGrid* allowed; ///< borrowed
+    const pvtCellGrid* cells;  ///< borrowed; may be null
+    const pvtTouching*
+        touching; ///< of `cells`; borrowed; may be null: then border cells are outside
+} pvtInterior;
+
+/// Every triangle of the occluder against the interior, exactly, by code that the optimizer does
+/// not share: `*outside` is the number of voxels in which some triangle is where it may not be, by
+/// more than 1/1024 voxel, or cell, in voxels that have cells. In border cells that is where it
+/// crosses a triangle of the surface. A triangle that is nowhere in what is allowed counts as well,
+/// for nothing tells which side of the surface it is on.
+PVT_API pvtStatus pvtCheckOccluder(pvtContext* context, const pvtInterior* interior,
+                                   const pvtMesh* occluder, uint64_t* outside);
 
 /// How close to a surface something lies on it.
 typedef struct pvtSurfaceReach {

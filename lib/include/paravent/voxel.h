@@ -101,6 +101,7 @@ typedef struct pvtCellGrid {
     pvtBitGrid voxels; ///< which
     uint32_t* ranks;   ///< one a word of `voxels`: how many are set in the words before it
     uint64_t* cells;   ///< one a voxel of these, in order: cell (i, j, k) is bit i + 4 j + 16 k
+    uint64_t* border;  ///< the same of cells between inside and outside; null: not known
     size_t count;      ///< of voxels
 } pvtCellGrid;
 
@@ -108,18 +109,35 @@ enum { PVT_CELLS = 4 };
 
 /// The cells of a voxel; 0 outside of the grid, and for a voxel that is not one of these.
 PVT_API uint64_t pvtCellGrid_Get(const pvtCellGrid* grid, int x, int y, int z);
+/// The same of its border cells.
+PVT_API uint64_t pvtCellGrid_GetBorder(const pvtCellGrid* grid, int x, int y, int z);
 PVT_API void pvtCellGrid_Free(pvtContext* context, pvtCellGrid* grid);
 
 /// Which part of the touched voxels is inside, judged at cells of a quarter of a voxel: what
 /// outside and inside voxels reach through cells that no triangle touches, at equal speed, belongs
 /// to the one that comes first, so that they meet in an opening narrower than a voxel; what is
 /// neither outside nor has an outside cell among its 26 neighbours is inside. So surface that
-/// nobody sees, as where the parts of a model overlap, is inside too. Voxels all of whose cells are
-/// inside are added to `allowed`, which was made by pvtMakeAllowedGrid at tolerance 0; those with
-/// some are put into `cells`.
+/// nobody sees, as where the parts of a model overlap, is inside too. Cells that have an outside
+/// one among their neighbours but are not outside themselves are the border: the surface passes
+/// most of them. Voxels all of whose cells are inside are added to `allowed`, which was made by
+/// pvtMakeAllowedGrid at tolerance 0; others with cells inside or on the border are put into
+/// `cells`.
 PVT_API pvtStatus pvtRefineAllowedGrid(pvtContext* context, const pvtMesh* mesh,
                                        const pvtSolid* solid, pvtBitGrid* allowed,
                                        pvtCellGrid* cells);
+
+/// Which triangles may pass which voxels of a cell grid.
+typedef struct pvtTouching {
+    const pvtMesh* mesh; ///< borrowed
+    uint32_t* starts;    ///< of each of the grid's voxels, and one more
+    uint32_t* triangles; ///< of voxel v from starts[v] to before starts[v + 1], in order
+} pvtTouching;
+
+/// Every triangle that touches a voxel is listed there, and few others. PVT_LIMIT beyond 2³²
+/// entries.
+PVT_API pvtStatus pvtListTouching(pvtContext* context, const pvtMesh* mesh,
+                                  const pvtCellGrid* cells, pvtTouching* touching);
+PVT_API void pvtTouching_Free(pvtContext* context, pvtTouching* touching);
 
 /// Squared distance [vx²] from each voxel's centre to the centre of the nearest marked voxel,
 /// exact, one value a voxel in x, y, z order; values above `limit` [vx²] are stored as limit + 1.

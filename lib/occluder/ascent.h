@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The refinement of occluders within a volume: all corners climb at once.
+#ifndef PVT_OCCLUDER_ASCENT_H
+#define PVT_OCCLUDER_ASCENT_H
+
+#include "inside.h"
+#include "sheets.h"
+
+typedef struct pvtAscentOptions {
+    const pvtViewOptions* views; ///< how they are spread, or a list
+    const pvtBitGrid* goal;      ///< what there is to hide; borrowed
+    const pvtInsideTest* inside;
+    const pvtSheetSet* sheets; ///< polygons on these stay where they are; borrowed; may be null
+    int budget;                ///< triangles, at most PVT_MOST_ASCENT
+    uint64_t seed;
+    int tries;       ///< climbs from the same start, of which the best is kept
+    int iterations;  ///< steps of all corners in each
+    int cycles;      ///< times that triangles are added and the least useful taken away again
+    int sights;      ///< views to learn from
+    int batch;       ///< of these that a step looks at, 1 to 64
+    int polish;      ///< steps that follow the exact test, at last
+    double deadline; ///< on pvtGetSeconds' clock: ends the steps; 0: none
+} pvtAscentOptions;
+
+enum { PVT_MOST_ASCENT = 512 };
+
+/// Triangles that the ascent of a budget likes to start from: it takes the least useful away.
+int pvtGetAscentStart(int budget);
+
+/// Moves the corners of all triangles so that they hide more, and triangles to where they are worth
+/// more. Triangles leave the planes of their polygons, and end inside. `planes` and `loops` keep
+/// those polygons of which a triangle is left. The mesh has at most `budget` triangles afterwards.
+pvtStatus pvtAscendOccluder(pvtContext* context, const pvtAscentOptions* options,
+                            pvtOccluder* occluder);
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// What the files of the ascent share.
+#ifndef PVT_OCCLUDER_ASCENT_STATE_H
+#define PVT_OCCLUDER_ASCENT_STATE_H
+
+#include "ascent.h"
+#include "contacts.h"
+#include "pull.h"
+
+typedef struct pvtAscent {
+    const pvtAscentOptions* options;
+    pvtGridFrame frame;
+    pvtTriangleSet set; ///< tagged by the polygons that they began as
+    pvtField field;
+    pvtSightSet sights;
+    pvtPuller puller;
+    pvtContactSet contacts;
+    float* margins;     ///< [vx] of each triangle: the depth that it is to keep
+    float (*speeds)[3]; ///< of each corner: the running mean of its pulls
+    float* squares;     ///< of each corner: the running mean of their squares
+    float* squaresBefore;
+    int32_t* moved;        ///< scratch, one a corner
+    pvtTriangleSet before; ///< the set before a cycle
+    double worth;          ///< its worth, by pvtAscent_Judge
+    pvtTriangleSet start;  ///< what each try starts from
+    pvtTriangleSet best;   ///< of the tries
+    double bestWorth;
+    int steps;      ///< taken in all tries
+    int contactAge; ///< steps since contacts were looked for; 0: look for them
+    size_t next;    ///< sight that comes next
+    float softness; ///< [px]
+    float reach;    ///< [vx] of a step
+} pvtAscent;
+
+/// Takes away the least useful triangles, one after the other, until `count` are left.
+void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count);
+/// Adds up to `count` triangles to the edges behind which there is most to hide; they start as
+/// slivers. Uses the puller's last pull, with its edges.
+void pvtAscent_Grow(pvtAscent* ascent, int count);
+/// What the triangles hide, as a share of all that can be: over the same sights each time.
+double pvtAscent_Judge(pvtContext* context, pvtAscent* ascent);
+/// Pulls with the sights that come next, and moves all corners by a step.
+void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges);
+/// Moves triangles inwards until the inside test finds each inside, and then out again as far as it
+/// lets them. Triangles that cannot be brought inside are taken away.
+pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent);
+
+/// [wu] as files store it.
+pvtVec3 pvtAscent_GetPlace(const pvtAscent* ascent, const float corner[3]);
+
+#endif

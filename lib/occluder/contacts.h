@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Where triangles come near the border of what is allowed, and how to keep them from leaving it.
+#ifndef PVT_OCCLUDER_CONTACTS_H
+#define PVT_OCCLUDER_CONTACTS_H
+
+#include "field.h"
+#include "triangle_set.h"
+
+/// Of a triangle: its corners, the deepest point outwards of each edge, and of what is between.
+enum { PVT_MOST_CONTACTS = 7 };
+
+/// A point of a triangle that has come near the border.
+typedef struct pvtContact {
+    int triangle;
+    float shares[3]; ///< of the corners, of a sum of 1
+    float inward[3]; ///< unit
+    float depth;     ///< [vx]
+} pvtContact;
+
+typedef struct pvtContactSet {
+    pvtContact* contacts; ///< in order of the triangles; those of fixed corners alone have none
+    int count;
+    int* counts; ///< of each triangle
+    int triangleCapacity;
+} pvtContactSet;
+
+typedef struct pvtContactOptions {
+    const float* margins; ///< [vx] of each triangle: the depth that it is to keep
+    float band;           ///< [vx] how near to that a contact begins
+} pvtContactOptions;
+
+pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContactSet* contacts);
+void pvtContactSet_Free(pvtContext* context, pvtContactSet* contacts);
+
+void pvtFindContacts(pvtContext* context, const pvtContactOptions* options, const pvtField* field,
+                     const pvtTriangleSet* set, pvtContactSet* contacts);
+/// Depths and directions anew, at the same points of the triangles.
+void pvtUpdateContacts(const pvtField* field, const pvtTriangleSet* set, pvtContactSet* contacts);
+/// Takes from the corners' velocities what would move a contact within the band outwards, and as
+/// little else as possible: `sweeps` passes over all contacts.
+void pvtSlideAlong(const pvtContactOptions* options, const pvtContactSet* contacts,
+                   const pvtTriangleSet* set, int sweeps, float (*velocities)[3]);
+/// Moves corners so that contacts are as deep as their triangle's margin asks for.
+void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, const float* margins,
+                   int sweeps, pvtTriangleSet* set);
+
+/// Moves the corners of a contact's triangle so that its point goes inwards by `amount` [vx].
+void pvtMoveContact(const pvtContact* contact, pvtTriangleSet* set, float amount);
+
+#endif

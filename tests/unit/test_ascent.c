@@ -1,0 +1,497 @@
+// SPDX-License-Identifier: MIT
+#include "voxel_shapes.h"
+
+#include "base/vector.h"
+#include "occluder/ascent.h"
+#include "occluder/contacts.h"
+#include "occluder/crossing.h"
+#include "occluder/pull.h"
+
+enum { SIDE = 48 };
+
+static const float CENTER = SIDE / 2.0F, RADIUS = SIDE / 2.0F - 4.0F;
+
+static float RollFloat(pvtRandom* random, float low, float high)
+{
+    return low + (high - low) * (float)pvtRandom_Unit(random);
+}
+
+// A ball that leaves four voxels free on each side, in a frame in which voxels are 1 wu.
+static void MakeBall(pvtContext* context, pvtBitGrid* grid)
+{
+    MakeEmptyGrid(context, SIDE, SIDE, SIDE, grid);
+    SetBall(grid, (pvtVec3){CENTER, CENTER, CENTER}, RADIUS);
+}
+
+static void RollCorner(pvtRandom* random, float reach, float corner[3])
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        corner[axis] = RollFloat(random, CENTER - reach, CENTER + reach);
+    }
+}
+
+// Triangles with corners of their own, within a cube.
+static void RollTriangles(pvtContext* context, int count, float reach, pvtTriangleSet* set)
+{
+    pvtRandom random = pvtMakeRandom(17, 4);
+    CHECK_OK(context, pvtCreateTriangleSet(context, 3 * count, count, set));
+    for (int t = 0; t < count; ++t) {
+        uint32_t corners[3];
+        for (int k = 0; k < 3; ++k) {
+            float corner[3];
+            RollCorner(&random, reach, corner);
+            corners[k] = pvtTriangleSet_AddCorner(set, corner, false);
+        }
+        pvtTriangleSet_AddTriangle(set, corners, t);
+    }
+    pvtTriangleSet_FindEdges(set);
+}
+
+static float GetDistance(const float point[3])
+{
+    float sum = 0.0F;
+    for (int axis = 0; axis < 3; ++axis) {
+        sum += (point[axis] - CENTER) * (point[axis] - CENTER);
+    }
+    return sqrtf(sum);
+}
+
+static void the_field_of_a_ball_is_its_depth(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtBitGrid grid;
+    MakeBall(context, &grid);
+    static const int resolutions[] = {64, 24};
+    for (int r = 0; r < 2; ++r) {
+        pvtField field;
+        CHECK_OK(context, pvtCreateField(context, &grid, NULL, resolutions[r], &field));
+        assert_int_equal(field.nodeSize, r + 1);
+        pvtRandom random = pvtMakeRandom(3, 3);
+        for (int round = 0; round < 3000; ++round) {
+            float point[3], inward[3];
+            RollCorner(&random, RADIUS + 2.0F, point);
+            const float distance = GetDistance(point), depth = RADIUS - distance;
+            const float found = pvtField_GetDepthAndInward(&field, point, inward);
+            assert_true(found == pvtField_GetDepth(&field, point));
+            if (fabsf(depth) < 6.0F) {
+                // Weights of 8, 11 and 14 are off by an eighth at most, voxels by one.
+                assert_true(fabsf(found - depth) < 0.13F * fabsf(depth) + 0.9F * (float)(r + 1));
+                float cosine = 0.0F;
+                for (int axis = 0; axis < 3; ++axis) {
+                    cosine -= inward[axis] * (point[axis] - CENTER) / distance;
+                }
+                assert_true(cosine > 0.6F);
+            }
+        }
+        pvtField_Free(context, &field);
+    }
+    pvtBitGrid_Free(context, &grid);
+    DestroyTestContext(context);
+}
+
+static void edges_are_shared_by_pairs_of_triangles(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtTriangleSet set;
+    CHECK_OK(context, pvtCreateTriangleSet(context, 8, 8, &set));
+    for (int i = 0; i < 6; ++i) {
+        pvtTriangleSet_AddCorner(&set, (float[3]){(float)i, (float)(i * i), 1.0F}, i == 5);
+    }
+    // Three triangles on the edge from 0 to 1: a pair, and one that is left.
+    pvtTriangleSet_AddTriangle(&set, (uint32_t[3]){0, 1, 2}, 7);
+    pvtTriangleSet_AddTriangle(&set, (uint32_t[3]){1, 0, 3}, 8);
+    pvtTriangleSet_AddTriangle(&set, (uint32_t[3]){0, 1, 5}, 9);
+    pvtTriangleSet_FindEdges(&set);
+    assert_int_equal(set.edgeCount, 8);
+    int pairs = 0;
+    for (int e = 0; e < set.edgeCount; ++e) {
+        pairs += set.edges[e].sideCount == 2 ? 1 : 0;
+    }
+    assert_int_equal(pairs, 1);
+    assert_true(!set.isOpen[0][0] && set.isOpen[0][1] && set.isOpen[0][2]);
+    pvtTriangleSet_Remove(&set, 0);
+    int32_t moved[8];
+    pvtTriangleSet_DropCorners(&set, moved);
+    assert_int_equal(set.cornerCount, 4);
+    assert_int_equal(set.triangleCount, 2);
+    assert_int_equal(set.tags[0], 9);
+    for (int c = 0; c < set.cornerCount; ++c) {
+        assert_true(set.corners[c][0] == (float)moved[c]);
+        assert_true(set.isFixed[c] == (moved[c] == 5));
+    }
+    pvtTriangleSet_Free(context, &set);
+    DestroyTestContext(context);
+}
+
+typedef struct Lesson {
+    pvtBitGrid grid;
+    pvtField field;
+    pvtSightSet sights;
+    pvtTriangleSet set;
+    pvtPuller puller;
+} Lesson;
+
+static void MakeLesson(pvtContext* context, int triangles, float reach, Lesson* lesson)
+{
+    MakeBall(context, &lesson->grid);
+    CHECK_OK(context, pvtCreateField(context, &lesson->grid, NULL, 64, &lesson->field));
+    const pvtViewOptions views = pvtDefaultViewOptions();
+    const pvtSightOptions options = {.views = &views, .count = 64, .quads = 400, .seed = 1};
+    CHECK_OK(context, pvtCreateSights(context, &options, &lesson->field, &lesson->sights));
+    RollTriangles(context, triangles, reach, &lesson->set);
+    CHECK_OK(context, pvtCreatePuller(context, &lesson->sights, &lesson->set, &lesson->puller));
+}
+
+static void FreeLesson(pvtContext* context, Lesson* lesson)
+{
+    pvtPuller_Free(context, &lesson->puller);
+    pvtTriangleSet_Free(context, &lesson->set);
+    pvtSightSet_Free(context, &lesson->sights);
+    pvtField_Free(context, &lesson->field);
+    pvtBitGrid_Free(context, &lesson->grid);
+}
+
+static void sights_see_a_disc_and_draw_their_rectangles_within_it(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(3);
+    Lesson lesson;
+    MakeLesson(context, 1, 5.0F, &lesson);
+    for (size_t s = 0; s < lesson.sights.count; ++s) {
+        const pvtSight* sight = &lesson.sights.sights[s];
+        int pixels = 0;
+        for (int y = 0; y < PVT_SIGHT_SIZE; ++y) {
+            pixels += pvtCountBits(sight->goal[y]);
+        }
+        // Less a ring of half a pixel, which is covered in part only.
+        const double radius = (double)RADIUS / (double)sight->pixelSize;
+        const double area = 3.14159265 * radius * radius;
+        assert_true(pixels < area + 3.0 * radius && pixels > area - 7.0 * radius);
+        assert_true(sight->quadCount > 20);
+        for (size_t q = 0; q < sight->quadCount; ++q) {
+            const pvtSightQuad quad = lesson.sights.quads[sight->firstQuad + q];
+            const uint64_t mask = pvtMakeMask(quad.x0, quad.x1);
+            for (int y = quad.y0; y < quad.y1; ++y) {
+                assert_true((sight->goal[y] & mask) == mask);
+            }
+        }
+    }
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
+static void following_the_pull_hides_more(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 10, 9.0F, &lesson);
+    const pvtPullOptions options = {.count = 64, .softness = 20.0F, .wantsEdges = true};
+    double before = 0.0;
+    for (int step = 0; step < 20; ++step) {
+        pvtPullCorners(context, &options, &lesson.puller);
+        assert_true(lesson.puller.share > before);
+        before = lesson.puller.share;
+        double most = 0.0;
+        for (int c = 0; c < lesson.set.cornerCount; ++c) {
+            for (int axis = 0; axis < 3; ++axis) {
+                most = fmax(most, fabs((double)lesson.puller.corners[c][axis]));
+            }
+        }
+        assert_true(most > 0.0);
+        for (int c = 0; c < lesson.set.cornerCount; ++c) {
+            for (int axis = 0; axis < 3; ++axis) {
+                lesson.set.corners[c][axis] += lesson.puller.corners[c][axis] / (float)most;
+            }
+        }
+    }
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
+static void what_another_covers_as_well_is_worth_nothing_alone(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 6, 12.0F, &lesson);
+    // Triangle 3 becomes a copy of triangle 1.
+    memcpy(lesson.set.triangles[3], lesson.set.triangles[1], sizeof lesson.set.triangles[3]);
+    pvtTriangleSet_FindEdges(&lesson.set);
+    const pvtPullOptions options = {.count = 64, .softness = 10.0F};
+    pvtWeighTriangles(context, &options, &lesson.puller);
+    assert_true(lesson.puller.triangles[1] == 0.0 && lesson.puller.triangles[3] == 0.0);
+    assert_true(pvtArePartners(&lesson.puller, 1, 3));
+    for (int t = 0; t < 6; ++t) {
+        assert_true(t == 1 || t == 3 || lesson.puller.triangles[t] > 0.0);
+    }
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
+static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 12, RADIUS, &lesson);
+    pvtContactSet contacts;
+    CHECK_OK(context, pvtCreateContacts(context, 12, &contacts));
+    const float margins[12] = {0};
+    const pvtContactOptions options = {.margins = margins, .band = 0.5F};
+    for (int round = 0; round < 40; ++round) {
+        pvtFindContacts(context, &options, &lesson.field, &lesson.set, &contacts);
+        pvtPushInside(&contacts, &lesson.field, margins, 3, &lesson.set);
+    }
+    for (int c = 0; c < lesson.set.cornerCount; ++c) {
+        assert_true(GetDistance(lesson.set.corners[c]) < RADIUS + 0.9F);
+    }
+    pvtFindContacts(context, &options, &lesson.field, &lesson.set, &contacts);
+    assert_true(contacts.count > 0);
+    float velocities[36][3];
+    pvtRandom random = pvtMakeRandom(9, 9);
+    for (int c = 0; c < 36; ++c) {
+        for (int axis = 0; axis < 3; ++axis) {
+            velocities[c][axis] = RollFloat(&random, -1.0F, 1.0F);
+        }
+    }
+    pvtSlideAlong(&options, &contacts, &lesson.set, 100, velocities);
+    for (int i = 0; i < contacts.count; ++i) {
+        const pvtContact* contact = &contacts.contacts[i];
+        float speed = 0.0F;
+        for (int k = 0; k < 3; ++k) {
+            const float* v = velocities[lesson.set.triangles[contact->triangle][k]];
+            for (int axis = 0; axis < 3; ++axis) {
+                speed += contact->shares[k] * v[axis] * contact->inward[axis];
+            }
+        }
+        assert_true(contact->depth >= 0.5F || speed > -0.05F);
+    }
+    pvtContactSet_Free(context, &contacts);
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
+static void triangles_cross_where_they_pass_through_each_other(void** state)
+{
+    (void)state;
+    const pvtVec3 floor[3] = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}};
+    pvtVec3 ends[2];
+    assert_true(pvtFindCrossing((pvtVec3[3]){{1, 1, -1}, {1, 1, 1}, {4, 1, 1}}, floor, ends));
+    CHECK_NEAR(pvtLength3(pvtSub(ends[0], ends[1])), 1.5, 1e-9);
+    CHECK_NEAR(ends[0].z, 0.0, 1e-9);
+    // Beside it, on it, touching it, and in the same plane.
+    assert_false(pvtFindCrossing((pvtVec3[3]){{9, 9, -1}, {9, 9, 1}, {12, 9, 1}}, floor, ends));
+    assert_false(pvtFindCrossing((pvtVec3[3]){{1, 1, 0}, {1, 1, 1}, {4, 1, 1}}, floor, ends));
+    assert_false(pvtFindCrossing((pvtVec3[3]){{1, 1, 0}, {2, 1, 0}, {4, 1, 1}}, floor, ends));
+    assert_false(pvtFindCrossing((pvtVec3[3]){{1, 1, 0}, {2, 1, 0}, {1, 3, 0}}, floor, ends));
+}
+
+// The inside of a cube that is tilted against the grid, up to the surface itself.
+typedef struct Tilted {
+    pvtMesh mesh;
+    pvtSolid solid;
+    pvtBitGrid allowed;
+    pvtCellGrid cells;
+    pvtTouching touching;
+    pvtInterior interior;
+    pvtInsideTest test;
+} Tilted;
+
+// Of a direction in the cube, whose faces are 10 away from its middle.
+static pvtVec3 Tilt(double x, double y, double z)
+{
+    return (pvtVec3){0.96 * x - 0.28 * y, 0.28 * x + 0.96 * y, z};
+}
+
+static void MakeTilted(pvtContext* context, Tilted* tilted)
+{
+    *tilted = (Tilted){0};
+    MakeBoxMesh(context, (pvtVec3){-10, -10, -10}, (pvtVec3){10, 10, 10}, &tilted->mesh);
+    for (size_t i = 0; i < tilted->mesh.positionCount; ++i) {
+        const pvtVec3 p = tilted->mesh.positions[i];
+        tilted->mesh.positions[i] = Tilt(p.x, p.y, p.z);
+    }
+    pvtVoxelizeOptions options = pvtDefaultVoxelizeOptions();
+    options.resolution = 24;
+    const pvtSolidOptions solid = pvtDefaultSolidOptions();
+    pvtBitGrid surface;
+    CHECK_OK(context, pvtVoxelizeMesh(context, &options, &tilted->mesh, &surface));
+    CHECK_OK(context, pvtFillSolid(context, &solid, &surface, &tilted->solid));
+    CHECK_OK(context, pvtMakeAllowedGrid(context, &tilted->solid, 0.0, &tilted->allowed));
+    CHECK_OK(context, pvtRefineAllowedGrid(context, &tilted->mesh, &tilted->solid, &tilted->allowed,
+                                           &tilted->cells));
+    CHECK_OK(context, pvtListTouching(context, &tilted->mesh, &tilted->cells, &tilted->touching));
+    tilted->interior = (pvtInterior){&tilted->allowed, &tilted->cells, &tilted->touching};
+    CHECK_OK(context, pvtCreateInsideTest(context, &tilted->interior, &tilted->test));
+    pvtBitGrid_Free(context, &surface);
+}
+
+static void FreeTilted(pvtContext* context, Tilted* tilted)
+{
+    pvtInsideTest_Free(context, &tilted->test);
+    pvtTouching_Free(context, &tilted->touching);
+    pvtCellGrid_Free(context, &tilted->cells);
+    pvtBitGrid_Free(context, &tilted->allowed);
+    pvtSolid_Free(context, &tilted->solid);
+    pvtMesh_Free(context, &tilted->mesh);
+}
+
+// What the test and the check say of a triangle in the cube's own directions.
+static bool IsInside(pvtContext* context, const Tilted* tilted, const pvtVec3 places[3],
+                     uint64_t* outside)
+{
+    pvtVec3 positions[3], corners[3];
+    const pvtGridFrame* frame = &tilted->allowed.frame;
+    for (int k = 0; k < 3; ++k) {
+        positions[k] = Tilt(places[k].x, places[k].y, places[k].z);
+        corners[k] = pvtScale(pvtSub(positions[k], frame->origin), 1.0 / frame->voxelSize);
+    }
+    pvtMesh mesh;
+    CHECK_OK(context, pvtCreateMesh(context, positions, 3, NULL, 1, &mesh));
+    CHECK_OK(context, pvtCheckOccluder(context, &tilted->interior, &mesh, outside));
+    pvtMesh_Free(context, &mesh);
+    return pvtInsideTest_HasTriangle(&tilted->test, corners);
+}
+
+static void triangles_may_come_up_to_the_surface_and_no_farther(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Tilted tilted;
+    MakeTilted(context, &tilted);
+    uint64_t outside = 0;
+    // A corner just below a face, and one just above it; voxels are about 1 in size, cells 1/4.
+    assert_true(
+        IsInside(context, &tilted, (pvtVec3[3]){{9.99, 1, 1}, {-3, 2, -4}, {-3, -5, 2}}, &outside));
+    assert_true(outside == 0);
+    assert_false(
+        IsInside(context, &tilted, (pvtVec3[3]){{10.1, 1, 1}, {-3, 2, -4}, {-3, -5, 2}}, &outside));
+    assert_true(outside > 0);
+    // An edge along a corner of the cube, which is nearer to it than any cell that is inside.
+    assert_true(IsInside(context, &tilted,
+                         (pvtVec3[3]){{9.98, 9.98, 7}, {9.98, 9.98, -7}, {0, 0, 0}}, &outside));
+    assert_true(outside == 0);
+    // Beside the cube, in cells that the surface passes: nothing tells that it is not inside.
+    assert_false(IsInside(context, &tilted,
+                          (pvtVec3[3]){{10.02, 1, 1}, {10.02, 1.2, 1}, {10.02, 1, 1.2}}, &outside));
+    assert_true(outside > 0);
+    FreeTilted(context, &tilted);
+    DestroyTestContext(context);
+}
+
+static void what_the_test_finds_inside_passes_the_check(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Tilted tilted;
+    MakeTilted(context, &tilted);
+    pvtRandom random = pvtMakeRandom(21, 2);
+    int inside = 0, near = 0;
+    for (int round = 0; round < 4000; ++round) {
+        pvtVec3 places[3];
+        double farthest = 0.0;
+        for (int k = 0; k < 3; ++k) {
+            const double x = 20.4 * pvtRandom_Unit(&random) - 10.2;
+            const double y = 20.4 * pvtRandom_Unit(&random) - 10.2;
+            const double z = 20.4 * pvtRandom_Unit(&random) - 10.2;
+            // One coordinate at the surface, more or less.
+            places[k] = (pvtVec3){x, y, z};
+            pvtSetAxis(&places[k], (int)pvtRandom_Below(&random, 3),
+                       9.9 + 0.12 * pvtRandom_Unit(&random));
+            farthest =
+                fmax(farthest, fmax(fabs(places[k].x), fmax(fabs(places[k].y), fabs(places[k].z))));
+        }
+        uint64_t outside = 0;
+        if (IsInside(context, &tilted, places, &outside)) {
+            assert_true(outside == 0);
+            assert_true(farthest < 10.0 + 1e-6);
+            ++inside;
+        } else {
+            // What it refuses is outside, or passes outside cells within 1/24 voxel, or lies along
+            // a face, in border cells alone.
+            near += farthest < 9.9 ? 1 : 0;
+        }
+    }
+    assert_true(inside > 100);
+    assert_int_equal(near, 0);
+    FreeTilted(context, &tilted);
+    DestroyTestContext(context);
+}
+
+static void BuildTilted(pvtContext* context, int budget, pvtOccluder* occluder,
+                        pvtBuildStats* stats)
+{
+    Tilted tilted;
+    MakeTilted(context, &tilted);
+    pvtBuildOptions options = pvtDefaultBuildOptions();
+    options.budget = budget;
+    options.resolution = 32;
+    options.effort = PVT_EFFORT_FAST;
+    CHECK_OK(context, pvtBuildOccluder(context, &options, &tilted.mesh, occluder, stats));
+    FreeTilted(context, &tilted);
+}
+
+static void an_ascent_keeps_to_its_budget_and_hides_nearly_all_of_a_cube(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    static const int budgets[] = {1, 2, 5, 12, 40};
+    double before = 0.0;
+    for (size_t i = 0; i < sizeof budgets / sizeof *budgets; ++i) {
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        BuildTilted(context, budgets[i], &occluder, &stats);
+        assert_true(occluder.mesh.triangleCount >= 1);
+        assert_true(occluder.mesh.triangleCount <= (size_t)budgets[i]);
+        assert_true(occluder.loops.loopCount <= occluder.mesh.triangleCount);
+        assert_true(stats.outside == 0);
+        assert_true(stats.measure >= 0.98 * before);
+        before = stats.measure;
+        if (budgets[i] == 40) {
+            // The ceiling takes in whole cells that the surface passes.
+            assert_true(stats.measure > 0.85 * stats.measureOfSolid);
+        }
+        pvtOccluder_Free(context, &occluder);
+    }
+    DestroyTestContext(context);
+}
+
+static void threads_do_not_change_an_ascent(void** state)
+{
+    (void)state;
+    pvtContext* one = CreateTestContext(1);
+    pvtContext* many = CreateTestContext(5);
+    pvtOccluder a, b;
+    pvtBuildStats stats;
+    BuildTilted(one, 14, &a, &stats);
+    BuildTilted(many, 14, &b, &stats);
+    assert_true(a.mesh.positionCount == b.mesh.positionCount);
+    assert_true(a.mesh.triangleCount == b.mesh.triangleCount);
+    assert_memory_equal(a.mesh.positions, b.mesh.positions, a.mesh.positionCount * sizeof(pvtVec3));
+    assert_memory_equal(a.mesh.indices, b.mesh.indices, a.mesh.triangleCount * sizeof(uint32_t[3]));
+    pvtOccluder_Free(one, &a);
+    pvtOccluder_Free(many, &b);
+    DestroyTestContext(one);
+    DestroyTestContext(many);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_field_of_a_ball_is_its_depth),
+        cmocka_unit_test(edges_are_shared_by_pairs_of_triangles),
+        cmocka_unit_test(sights_see_a_disc_and_draw_their_rectangles_within_it),
+        cmocka_unit_test(following_the_pull_hides_more),
+        cmocka_unit_test(what_another_covers_as_well_is_worth_nothing_alone),
+        cmocka_unit_test(contacts_bring_triangles_inside_and_keep_them_there),
+        cmocka_unit_test(triangles_cross_where_they_pass_through_each_other),
+        cmocka_unit_test(triangles_may_come_up_to_the_surface_and_no_farther),
+        cmocka_unit_test(what_the_test_finds_inside_passes_the_check),
+        cmocka_unit_test(an_ascent_keeps_to_its_budget_and_hides_nearly_all_of_a_cube),
+        cmocka_unit_test(threads_do_not_change_an_ascent),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
