@@ -172,8 +172,9 @@ static pvtStatus Prepare(pvtContext* context, const pvtOccluder* occluder, pvtAs
     if (status == PVT_OK) {
         status = pvtCreatePuller(context, &ascent->sights, &ascent->set, &ascent->puller);
     }
-    pvtTriangleSet_FindEdges(&ascent->set);
-    pvtTriangleSet_Copy(&ascent->set, &ascent->start);
+    if (status == PVT_OK) {
+        pvtTriangleSet_Copy(&ascent->set, &ascent->start);
+    }
     return status;
 }
 
@@ -271,8 +272,7 @@ double pvtAscent_Judge(pvtContext* context, pvtAscent* ascent)
     return sum * PVT_MOST_BATCH / JUDGES;
 }
 
-// A cycle that lost is undone. What corners were pulled by stays theirs only where they are the
-// same.
+// A cycle that lost is undone; corners start anew from rest.
 static void EndCycle(pvtContext* context, pvtAscent* ascent)
 {
     const double worth = pvtAscent_Judge(context, ascent);
@@ -459,7 +459,7 @@ pvtStatus pvtAscendOccluder(pvtContext* context, const pvtAscentOptions* options
     if (status == PVT_OK) {
         status = pvtAscent_Settle(context, ascent);
     }
-    if (status == PVT_OK && ascent->set.triangleCount > 0) {
+    if (status == PVT_OK) {
         status = StoreTriangles(context, ascent, occluder);
     }
     FreeAscent(context, ascent);

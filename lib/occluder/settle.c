@@ -214,13 +214,15 @@ static void MoveCorner(pvtAscent* ascent, uint32_t corner, const float step[3])
 }
 
 // A step of the ascent that never leaves the inside.
-static void PolishOnce(pvtContext* context, pvtAscent* ascent)
+static pvtStatus PolishOnce(pvtContext* context, pvtAscent* ascent)
 {
     pvtTriangleSet* set = &ascent->set;
     const size_t bytes = (size_t)set->cornerCount * sizeof *set->corners;
     float(*before)[3] = pvtAllocate(context, (size_t)set->cornerCount, sizeof *before);
     float(*after)[3] = pvtAllocate(context, (size_t)set->cornerCount, sizeof *after);
-    if (before != NULL && after != NULL) {
+    const pvtStatus status =
+        before == NULL || after == NULL ? pvtContext_GetStatus(context) : PVT_OK;
+    if (status == PVT_OK) {
         memcpy(before, set->corners, bytes);
         pvtAscent_Step(context, ascent, false);
         memcpy(after, set->corners, bytes);
@@ -239,6 +241,7 @@ static void PolishOnce(pvtContext* context, pvtAscent* ascent)
     }
     pvtRelease(context, before);
     pvtRelease(context, after);
+    return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
 }
 
 pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent)
@@ -257,8 +260,7 @@ pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent)
     pvtRelease(context, settling.contacts);
     for (int i = 0; i < ascent->options->polish && status == PVT_OK; ++i) {
         ascent->reach = POLISH_REACH;
-        PolishOnce(context, ascent);
-        status = pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
+        status = PolishOnce(context, ascent);
     }
     return status;
 }
