@@ -50,6 +50,17 @@ static inline int pvtCountBits(uint64_t word)
 #endif
 }
 
+/// Eight bits to eight bytes of 0 or 1, lowest first.
+static inline uint64_t pvtSpreadBits(uint64_t bits)
+{
+    const uint64_t ones = UINT64_C(0x0101010101010101);
+    const uint64_t picked = (bits * ones) & UINT64_C(0x8040201008040201);
+    // A byte that is not 0 carries into its top bit.
+    const uint64_t top =
+        ((picked & UINT64_C(0x7f7f7f7f7f7f7f7f)) + UINT64_C(0x7f7f7f7f7f7f7f7f)) | picked;
+    return (top >> 7) & ones;
+}
+
 /// Sets the bits from `begin` to `end` − 1 of a row; none when end ≤ begin.
 static inline void pvtSetBitRange(uint64_t* row, size_t begin, size_t end)
 {

@@ -32,7 +32,6 @@ enum {
 
 static const float START_SOFTNESS = 30.0F; // [px]
 static const float START_REACH = 3.0F;     // [vx] at 256 along the longest side
-static const float INSET = 0.3F;           // [px]
 static const float GROWTH = 1.0F;          // triangles added in a cycle, as part of the budget
 static const float MOMENTUM = 0.9F, SQUARES = 0.98F;
 static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F; // [vx]
@@ -238,7 +237,7 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
     const pvtPullOptions pull = {.first = ascent->next,
                                  .count = ascent->options->batch,
                                  .softness = ascent->softness,
-                                 .inset = INSET,
+                                 .inset = PVT_ASCENT_INSET,
                                  .wantsEdges = wantsEdges};
     pvtPullCorners(context, &pull, &ascent->puller);
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
@@ -264,8 +263,10 @@ double pvtAscent_Judge(pvtContext* context, pvtAscent* ascent)
 {
     double sum = 0.0;
     for (size_t first = 0; first < JUDGES; first += PVT_MOST_BATCH) {
-        const pvtPullOptions pull = {
-            .first = first, .count = PVT_MOST_BATCH, .softness = ascent->softness, .inset = INSET};
+        const pvtPullOptions pull = {.first = first,
+                                     .count = PVT_MOST_BATCH,
+                                     .softness = ascent->softness,
+                                     .inset = PVT_ASCENT_INSET};
         pvtPullCorners(context, &pull, &ascent->puller);
         sum += ascent->puller.share;
     }

@@ -7,6 +7,8 @@
 #include "contacts.h"
 #include "pull.h"
 
+#define PVT_ASCENT_INSET 0.3F ///< [px] as pvtPullOptions tells
+
 typedef struct pvtAscent {
     const pvtAscentOptions* options;
     pvtGridFrame frame;

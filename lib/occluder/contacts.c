@@ -27,7 +27,7 @@ void pvtContactSet_Free(pvtContext* context, pvtContactSet* contacts)
 
 pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContactSet* contacts)
 {
-    *contacts = (pvtContactSet){.triangleCapacity = triangleCapacity};
+    *contacts = (pvtContactSet){0};
     contacts->contacts = pvtAllocate(context, (size_t)triangleCapacity * PVT_MOST_CONTACTS,
                                      sizeof *contacts->contacts);
     contacts->counts = pvtAllocate(context, (size_t)triangleCapacity, sizeof *contacts->counts);
@@ -149,12 +149,6 @@ static void StartProbe(const ContactTask* task, int triangle, Probe* probe)
     }
 }
 
-static bool IsFixed(const pvtTriangleSet* set, int triangle)
-{
-    const uint32_t* corners = set->triangles[triangle];
-    return set->isFixed[corners[0]] && set->isFixed[corners[1]] && set->isFixed[corners[2]];
-}
-
 static void ProbeTriangles(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
@@ -164,7 +158,7 @@ static void ProbeTriangles(size_t begin, size_t end, int worker, void* taskData)
         int count = 0;
         Probe probe;
         StartProbe(task, t, &probe);
-        if (!IsFixed(task->set, t)) {
+        if (!pvtTriangleSet_IsFixed(task->set, t)) {
             ProbePiece(&probe, (float[2]){0.0F, 0.0F}, 1.0F, MOST_SPLITS);
         }
         for (int kind = 0; kind < PVT_MOST_CONTACTS; ++kind) {

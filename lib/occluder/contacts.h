@@ -21,7 +21,6 @@ typedef struct pvtContactSet {
     pvtContact* contacts; ///< in order of the triangles; those of fixed corners alone have none
     int count;
     int* counts; ///< of each triangle
-    int triangleCapacity;
 } pvtContactSet;
 
 typedef struct pvtContactOptions {

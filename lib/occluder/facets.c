@@ -4,6 +4,7 @@
 #include "base/context.h"
 #include "base/vector.h"
 #include "occlusion/rectangles.h"
+#include "occlusion/stride.h"
 
 #include <assert.h>
 #include <math.h>
@@ -201,25 +202,6 @@ static pvtStatus CopyMesh(pvtContext* context, const pvtMesh* mesh, pvtMesh* cop
     return PVT_OK;
 }
 
-// Views come in order of their elevation. In steps that are prime to their number, near the golden
-// section of it, the first few are spread over all of them.
-static size_t GetStride(size_t count)
-{
-    size_t stride = count * 5 / 8 + 1;
-    for (;; ++stride) {
-        size_t a = count;
-        size_t b = stride;
-        while (b != 0) {
-            const size_t rest = a % b;
-            a = b;
-            b = rest;
-        }
-        if (a == 1) {
-            return stride;
-        }
-    }
-}
-
 pvtStatus pvtCreateFacets(pvtContext* context, const pvtFacetOptions* options, const pvtMesh* mesh,
                           pvtFacets* facets)
 {
@@ -234,7 +216,7 @@ pvtStatus pvtCreateFacets(pvtContext* context, const pvtFacetOptions* options, c
         pvtFacets_Free(context, facets);
         return status;
     }
-    const size_t stride = GetStride(facets->screenCount);
+    const size_t stride = pvtGetViewStride(facets->screenCount);
     for (size_t v = 0; v < facets->viewCount; ++v) {
         const pvtView* view = v < facets->screenCount
                                   ? &options->screen->views[v * stride % facets->screenCount]

@@ -199,16 +199,6 @@ static void DrawTriangle(const pvtTriangleSet* set, float (*places)[2], int tria
     }
 }
 
-// Eight bits to eight bytes: how many are set up to each.
-static uint64_t SumByte(uint64_t bits)
-{
-    const uint64_t ones = UINT64_C(0x0101010101010101);
-    const uint64_t picked = (bits * ones) & UINT64_C(0x8040201008040201);
-    const uint64_t top =
-        ((picked & UINT64_C(0x7f7f7f7f7f7f7f7f)) + UINT64_C(0x7f7f7f7f7f7f7f7f)) | picked;
-    return ((top >> 7) & ones) * ones;
-}
-
 PVT_VECTOR_CLONES
 static void SumPixels(const uint64_t* missing, uint16_t (*restrict sums)[STRIDE])
 {
@@ -222,8 +212,9 @@ static void SumPixels(const uint64_t* missing, uint16_t (*restrict sums)[STRIDE]
         uint8_t counts[SIZE];
         uint64_t sum = 0;
         for (int byte = 0; byte < 8; ++byte) {
+            // Bytes times ones: each becomes the sum of those up to it.
             const uint64_t here =
-                SumByte((row >> (8 * byte)) & 255) + sum * UINT64_C(0x0101010101010101);
+                (pvtSpreadBits((row >> (8 * byte)) & 255) + sum) * UINT64_C(0x0101010101010101);
             for (int i = 0; i < 8; ++i) {
                 counts[8 * byte + i] = (uint8_t)(here >> (8 * i));
             }

@@ -12,7 +12,6 @@ enum {
     MOST_TAKEN = 16, // at once, as long as none is another's partner
 };
 
-static const float INSET = 0.3F;       // [px]
 static const float MOST_REACH = 40.0F; // [vx] that a new triangle is thought to grow
 static const float NEW_SQUARE = 0.1F;  // of the greatest: what new corners start from
 
@@ -64,8 +63,10 @@ static int ChooseTriangles(const pvtAscent* ascent, int most, int taken[MOST_TAK
 
 void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count)
 {
-    const pvtPullOptions options = {
-        .first = ascent->next, .count = WEIGHED, .softness = ascent->softness, .inset = INSET};
+    const pvtPullOptions options = {.first = ascent->next,
+                                    .count = WEIGHED,
+                                    .softness = ascent->softness,
+                                    .inset = PVT_ASCENT_INSET};
     while (ascent->set.triangleCount > count && !pvtIsCancelled(context)) {
         pvtWeighTriangles(context, &options, &ascent->puller);
         int taken[MOST_TAKEN];

@@ -31,12 +31,6 @@ static bool IsInside(const pvtAscent* ascent, int triangle)
     return pvtInsideTest_HasTriangle(ascent->options->inside, corners);
 }
 
-static bool IsFixed(const pvtTriangleSet* set, int triangle)
-{
-    const uint32_t* corners = set->triangles[triangle];
-    return set->isFixed[corners[0]] && set->isFixed[corners[1]] && set->isFixed[corners[2]];
-}
-
 // What is looked at again: triangles of which a corner moved since they were found inside.
 typedef struct Settling {
     pvtAscent* ascent;
@@ -157,7 +151,7 @@ static pvtStatus BringInside(pvtContext* context, Settling* settling)
 {
     const pvtTriangleSet* set = &settling->ascent->set;
     for (int t = 0; t < set->triangleCount; ++t) {
-        settling->isSettled[t] = IsFixed(set, t);
+        settling->isSettled[t] = pvtTriangleSet_IsFixed(set, t);
     }
     int outside = TestAll(context, settling);
     for (int round = 0; round < MOST_ROUNDS && outside > 0; ++round) {

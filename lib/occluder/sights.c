@@ -9,6 +9,7 @@
 #include "base/context.h"
 #include "base/random.h"
 #include "base/vector.h"
+#include "occlusion/stride.h"
 
 #include <string.h>
 
@@ -197,30 +198,12 @@ static void DrawQuads(const Splatter* splatter, pvtRandom* random, pvtSight* sig
     }
 }
 
-// The views come in order of their height: in steps near the golden section of their number, which
-// are prime to it, any few that follow each other are spread over all of them.
-static size_t GetStride(size_t count)
-{
-    for (size_t stride = count * 5 / 8 + 1;; ++stride) {
-        size_t a = count;
-        size_t b = stride;
-        while (b != 0) {
-            const size_t rest = a % b;
-            a = b;
-            b = rest;
-        }
-        if (a == 1) {
-            return stride;
-        }
-    }
-}
-
 static void MakeSightRange(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Splatter* splatter = taskData;
     const pvtViewSet* views = splatter->views;
-    const size_t stride = GetStride(splatter->set->count);
+    const size_t stride = pvtGetViewStride(splatter->set->count);
     for (size_t s = begin; s < end && !pvtIsCancelled(splatter->context); ++s) {
         pvtSight* sight = &splatter->set->sights[s];
         pvtRandom random = pvtMakeRandom(splatter->options->seed, STREAM + s);

@@ -287,6 +287,12 @@ static bool IsPaper(const pvtBuild* build)
     return build->options->method == PVT_METHOD_PAPER;
 }
 
+// What ascends needs no more than a start, and leaves it far behind.
+static bool IsStartEnough(const pvtBuild* build)
+{
+    return pvtMayAscend(build) || build->options->effort == PVT_EFFORT_FAST;
+}
+
 // What is sliced: the paper slices the solid, and lets simplification stray by the tolerance; the
 // planar method slices the allowed voxels, and never leaves them.
 static const pvtSliceVolume* GetSlicedVolume(const pvtBuild* build)
@@ -316,9 +322,7 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
         pvtPlanOptions options = pvtDefaultPlanOptions();
         options.faces = IsPaper(build) ? NULL : &faces;
         options.axes = !IsPaper(build);
-        // What ascends needs no more than a start, and leaves it far behind.
-        const bool isShort = pvtMayAscend(build) || build->options->effort == PVT_EFFORT_FAST;
-        if (!IsPaper(build) && isShort) {
+        if (!IsPaper(build) && IsStartEnough(build)) {
             options.directions = FAST_DIRECTIONS;
             options.depths = FAST_DEPTHS;
         }
@@ -364,8 +368,7 @@ static pvtStatus Choose(pvtContext* context, pvtBuild* build, const pvtViewOptio
                         pvtCut* cut)
 {
     pvtViewOptions few = *views;
-    const bool isShort = pvtMayAscend(build) || build->options->effort == PVT_EFFORT_FAST;
-    const int most = isShort ? FAST_SELECT_VIEWS : SELECT_VIEWS;
+    const int most = IsStartEnough(build) ? FAST_SELECT_VIEWS : SELECT_VIEWS;
     few.count = few.count < most ? few.count : most;
     pvtViewSet set;
     pvtStatus status = pvtMakeViews(context, &few, &set);

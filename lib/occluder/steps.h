@@ -29,8 +29,7 @@ typedef struct pvtBuild {
     pvtCandidateSet candidates;
     pvtViewSet views;
     pvtOccluder occluder;
-    pvtOccluder
-        flat; ///< selected for the budget alone, where the occluder is to ascend; else empty
+    pvtOccluder flat; ///< selected for the budget alone, before the ascent; else empty
 } pvtBuild;
 
 typedef pvtStatus pvtBuildStep(pvtContext* context, pvtBuild* build);

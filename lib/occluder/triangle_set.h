@@ -46,6 +46,13 @@ void pvtTriangleSet_DropCorners(pvtTriangleSet* set, int32_t* moved);
 /// To be called after triangles were added or removed, before the edges are used.
 void pvtTriangleSet_FindEdges(pvtTriangleSet* set);
 
+/// Whether none of a triangle's corners may move.
+static inline bool pvtTriangleSet_IsFixed(const pvtTriangleSet* set, int triangle)
+{
+    const uint32_t* corners = set->triangles[triangle];
+    return set->isFixed[corners[0]] && set->isFixed[corners[1]] && set->isFixed[corners[2]];
+}
+
 /// −1, 0 or 1: the side of the line from a to b that c lies on, left being 1.
 static inline int pvtGetSide2(const float a[2], const float b[2], const float c[2])
 {

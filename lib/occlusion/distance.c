@@ -8,6 +8,7 @@
 // vector width gives the same result. The paper floods on the GPU instead (Rong and Tan, 2006).
 #include "distance.h"
 
+#include "base/bits.h"
 #include "base/vectors.h"
 
 #include <assert.h>
@@ -35,17 +36,6 @@ void pvtFillDistanceTable(int size, int exponent, uint32_t* table)
                                              : distance * (double)squared;
         table[squared] = (uint32_t)lrint(256.0 * worth);
     }
-}
-
-// Eight bits to eight bytes of 0 or 255.
-static uint64_t SpreadBits(uint64_t bits)
-{
-    const uint64_t ones = UINT64_C(0x0101010101010101);
-    const uint64_t picked = (bits * ones) & UINT64_C(0x8040201008040201);
-    // A byte that is not 0 carries into its top bit.
-    const uint64_t top =
-        ((picked & UINT64_C(0x7f7f7f7f7f7f7f7f)) + UINT64_C(0x7f7f7f7f7f7f7f7f)) | picked;
-    return ((top >> 7) & ones) * 255;
 }
 
 PVT_VECTOR_CLONES
@@ -77,7 +67,7 @@ void pvtTransformMaskColumns(const uint64_t* rows, int size, uint8_t* columns)
         uint8_t* row = columns + (size_t)y * (size_t)size;
         for (size_t byte = 0; byte < words * 8; ++byte) {
             const uint64_t word = rows[(size_t)y * words + byte / 8];
-            const uint64_t spread = SpreadBits((word >> (byte % 8 * 8)) & 255);
+            const uint64_t spread = 255 * pvtSpreadBits((word >> (byte % 8 * 8)) & 255);
             memcpy(row + byte * 8, &spread, 8);
         }
         CountDown(row, above, size);

@@ -7,7 +7,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { CANCEL_INTERVAL = 4096 };
 

@@ -102,10 +102,9 @@ PVT_API pvtStatus pvtTakeCut(pvtContext* context, const pvtCandidateSet* candida
 /// Where triangles may lie: in allowed voxels, in allowed cells of others, and, where the surface
 /// is known, in border cells as far as that.
 typedef struct pvtInterior {
-    const pvtBitGrid* allowed; ///< borrowed
-    const pvtCellGrid* cells;  ///< borrowed; may be null
-    const pvtTouching*
-        touching; ///< of `cells`; borrowed; may be null: then border cells are outside
+    const pvtBitGrid* allowed;   ///< borrowed
+    const pvtCellGrid* cells;    ///< borrowed; may be null
+    const pvtTouching* touching; ///< of `cells`; borrowed; null: border cells are outside
 } pvtInterior;
 
 /// Every triangle of the occluder against the interior, exactly, by code that the optimizer does
