@@ -2,6 +2,7 @@
 #include "arrangement.h"
 
 #include "base/context.h"
+#include "voxel/bit_grid.h"
 
 #include <assert.h>
 #include <string.h>
@@ -27,8 +28,7 @@ pvtStatus pvtCreateArrangement(pvtContext* context, const pvtScorerOptions* opti
 {
     *arrangement = (pvtArrangement){.volume = volume, .capacity = capacity};
     const int* size = volume->grid->frame.size;
-    const int longest = size[0] > size[1] ? (size[0] > size[2] ? size[0] : size[2])
-                                          : (size[1] > size[2] ? size[1] : size[2]);
+    const int longest = pvtGetLongestSide(size);
     arrangement->cellsPerVoxel = volume->cells != NULL || longest <= 160 ? 4
                                  : longest <= 640                        ? 2
                                                                          : 1;

@@ -15,6 +15,7 @@
 
 #include "base/context.h"
 #include "base/vector.h"
+#include "voxel/bit_grid.h"
 
 #include <assert.h>
 #include <math.h>
@@ -181,8 +182,7 @@ static pvtStatus Prepare(pvtContext* context, const pvtOccluder* occluder, pvtAs
 static void BeginTry(pvtAscent* ascent, int attempt)
 {
     const int* size = ascent->frame.size;
-    const int longest = size[0] > size[1] ? (size[0] > size[2] ? size[0] : size[2])
-                                          : (size[1] > size[2] ? size[1] : size[2]);
+    const int longest = pvtGetLongestSide(size);
     ascent->softness = START_SOFTNESS;
     ascent->reach = START_REACH * (float)longest / 256.0F;
     ascent->next = ascent->sights.count * (size_t)attempt / (size_t)ascent->options->tries;

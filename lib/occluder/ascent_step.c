@@ -22,7 +22,7 @@ pvtInterior pvtGetInterior(const pvtBuild* build)
                          .touching = build->touching.starts != NULL ? &build->touching : NULL};
 }
 
-static pvtStatus Ascend(pvtContext* context, pvtBuild* build, const pvtInsideTest* inside)
+static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
 {
     static const struct {
         int tries, iterations, cycles, sights, batch, polish;
@@ -36,7 +36,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build, const pvtInsideTes
     const pvtAscentOptions options = {
         .views = &views,
         .goal = build->hiding.words != NULL ? &build->hiding : &build->allowed,
-        .inside = inside,
+        .inside = &build->inside,
         .sheets = &build->sheets,
         .budget = budget,
         .seed = build->options->seed,
@@ -56,12 +56,7 @@ pvtStatus pvtAscendStep(pvtContext* context, pvtBuild* build)
     if (!pvtMayAscend(build)) {
         return PVT_OK;
     }
-    pvtInsideTest inside;
     const pvtInterior interior = pvtGetInterior(build);
-    pvtStatus status = pvtCreateInsideTest(context, &interior, &inside);
-    if (status == PVT_OK) {
-        status = Ascend(context, build, &inside);
-    }
-    pvtInsideTest_Free(context, &inside);
-    return status;
+    const pvtStatus status = pvtCreateInsideTest(context, &interior, &build->inside);
+    return status == PVT_OK ? Ascend(context, build) : status;
 }

@@ -82,23 +82,17 @@ static pvtStatus Bend(pvtContext* context, pvtBuild* build)
     static const int trials[] = {
         [PVT_EFFORT_FAST] = 200, [PVT_EFFORT_DEFAULT] = 3000, [PVT_EFFORT_BEST] = 60000};
     pvtBendOptions options = {.views = &build->views,
+                              .inside = &build->inside,
                               .bounds = build->bounds,
                               .seed = build->options->seed,
                               .trials = trials[build->options->effort],
                               .deadline = pvtGetDeadline(build)};
     pvtViewSet more;
-    pvtInsideTest inside = {0};
     pvtStatus status = MakeMoreViews(context, build, &more);
     if (status == PVT_OK) {
-        const pvtInterior interior = pvtGetInterior(build);
-        status = pvtCreateInsideTest(context, &interior, &inside);
-    }
-    if (status == PVT_OK) {
         options.more = &more;
-        options.inside = &inside;
         status = pvtBendOccluder(context, &options, &build->occluder);
     }
-    pvtInsideTest_Free(context, &inside);
     pvtViewSet_Free(context, &more);
     return status;
 }

@@ -197,8 +197,7 @@ pvtStatus pvtCreateField(pvtContext* context, const pvtBitGrid* allowed, const p
                          int resolution, pvtField* field)
 {
     const int* size = allowed->frame.size;
-    const int longest = size[0] > size[1] ? (size[0] > size[2] ? size[0] : size[2])
-                                          : (size[1] > size[2] ? size[1] : size[2]);
+    const int longest = pvtGetLongestSide(size);
     *field = (pvtField){.nodeSize = 1};
     // Powers of two up to a word, so that a node's voxels lie in one.
     while (longest > resolution * field->nodeSize && field->nodeSize < 64) {

@@ -10,6 +10,7 @@
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
+#include "voxel/bit_grid.h"
 #include "voxel/cell_grid.h"
 
 #include <math.h>
@@ -131,8 +132,7 @@ pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtInterior* interior, 
         test->interior.cells = NULL;
     }
     const int* size = allowed->frame.size;
-    const int longest = size[0] > size[1] ? (size[0] > size[2] ? size[0] : size[2])
-                                          : (size[1] > size[2] ? size[1] : size[2]);
+    const int longest = pvtGetLongestSide(size);
     while (test->blockSize * MAX_BLOCKS < longest) {
         test->blockSize *= 2;
     }

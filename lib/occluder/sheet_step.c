@@ -6,7 +6,6 @@
 #include "base/context.h"
 #include "base/vector.h"
 #include "ceiling.h"
-#include "check.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -162,20 +161,14 @@ static pvtStatus TakeOutside(pvtContext* context, const pvtMesh* occluder,
 
 // What the promise says of panels on the surface: nothing is left of them without it, but what lies
 // in allowed voxels and cells.
-static pvtStatus CheckPanels(pvtContext* context, pvtBuild* build)
+static pvtStatus CheckPanels(pvtContext* context, pvtBuild* build, const uint64_t* isOutside)
 {
     pvtBuildStats* stats = &build->stats;
     const pvtMesh* mesh = &build->occluder.mesh;
     const pvtSurfaceReach reach = {.distance = stats->deviation, .slack = stats->voxelSize / 256.0};
-    const pvtInterior all = pvtGetInterior(build);
-    const pvtInterior allowed = {.allowed = all.allowed, .cells = all.cells};
-    uint64_t* isOutside = pvtAllocate(context, mesh->triangleCount, sizeof *isOutside);
+    const pvtInterior allowed = {.allowed = &build->allowed, .cells = &build->cells};
     pvtMesh outside = {0}, rest = {0};
-    pvtStatus status = isOutside == NULL ? pvtContext_GetStatus(context)
-                                         : pvtCheckTriangles(context, &all, mesh, isOutside);
-    if (status == PVT_OK) {
-        status = TakeOutside(context, mesh, isOutside, &outside);
-    }
+    pvtStatus status = TakeOutside(context, mesh, isOutside, &outside);
     if (status == PVT_OK) {
         status = pvtTakeOffSurface(context, &reach, build->mesh, &outside, &rest);
     }
@@ -184,11 +177,10 @@ static pvtStatus CheckPanels(pvtContext* context, pvtBuild* build)
     }
     pvtMesh_Free(context, &rest);
     pvtMesh_Free(context, &outside);
-    pvtRelease(context, isOutside);
     return status;
 }
 
-pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build)
+pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build, const uint64_t* outside)
 {
     pvtBuildStats* stats = &build->stats;
     for (size_t p = 0; p < build->occluder.loops.loopCount; ++p) {
@@ -200,7 +192,7 @@ pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build)
     }
     stats->deviation = build->deviation * stats->voxelSize;
     stats->errorBound = fmax(stats->errorBound, stats->deviation);
-    const pvtStatus status = stats->outside > 0 ? CheckPanels(context, build) : PVT_OK;
+    const pvtStatus status = stats->outside > 0 ? CheckPanels(context, build, outside) : PVT_OK;
     if (status == PVT_OK && build->deviation > BOUND) {
         pvtLog(context, PVT_LOG_WARNING,
                "the mesh has no inside at %d voxels: all panels lie on its surface, which is not "

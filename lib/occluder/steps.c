@@ -5,6 +5,7 @@
 #include "base/context.h"
 #include "base/vector.h"
 #include "ceiling.h"
+#include "check.h"
 #include "refine.h"
 #include "voxel/bit_grid.h"
 
@@ -46,6 +47,7 @@ void pvtBuild_Free(pvtContext* context, pvtBuild* build)
     pvtBitGrid_Free(context, &build->allowed);
     pvtCellGrid_Free(context, &build->cells);
     pvtTouching_Free(context, &build->touching);
+    pvtInsideTest_Free(context, &build->inside);
     pvtSliceVolume_Free(context, &build->volume);
     pvtSliceVolume_Free(context, &build->solidVolume);
     pvtSectionSet_Free(context, &build->sections);
@@ -468,14 +470,28 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
     return status;
 }
 
+// The promise, kept by every triangle.
+static pvtStatus CheckTriangles(pvtContext* context, pvtBuild* build)
+{
+    const pvtMesh* mesh = &build->occluder.mesh;
+    const pvtInterior interior = pvtGetInterior(build);
+    uint64_t* outside = pvtAllocate(context, mesh->triangleCount, sizeof *outside);
+    pvtStatus status = outside == NULL ? pvtContext_GetStatus(context)
+                                       : pvtCheckTriangles(context, &interior, mesh, outside);
+    for (size_t t = 0; t < mesh->triangleCount && status == PVT_OK; ++t) {
+        build->stats.outside += outside[t];
+    }
+    if (status == PVT_OK) {
+        status = pvtCheckSheets(context, build, outside);
+    }
+    pvtRelease(context, outside);
+    return status;
+}
+
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
 {
     pvtBuildStats* stats = &build->stats;
-    const pvtInterior interior = pvtGetInterior(build);
-    pvtStatus status = pvtCheckOccluder(context, &interior, &build->occluder.mesh, &stats->outside);
-    if (status == PVT_OK) {
-        status = pvtCheckSheets(context, build);
-    }
+    pvtStatus status = CheckTriangles(context, build);
     if (status == PVT_OK) {
         status = pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE,
                                      &build->occluder.mesh, &stats->measure);

@@ -17,6 +17,7 @@ typedef struct pvtBuild {
     pvtBitGrid allowed;         ///< where polygons may lie
     pvtCellGrid cells;          ///< allowed parts of other voxels
     pvtTouching touching;       ///< the surface in these
+    pvtInsideTest inside;       ///< of all three; only where the occluder ascends
     pvtSliceVolume volume;      ///< of `allowed`
     pvtSliceVolume solidVolume; ///< of the solid: what the paper's way slices
     pvtBox3 bounds;             ///< [wu] of the allowed voxels
@@ -64,8 +65,9 @@ double pvtGetDeadline(const pvtBuild* build);
 bool pvtMayUseSheets(const pvtBuild* build);
 /// Adds chains on the sheets to the candidates.
 pvtStatus pvtAddSheets(pvtContext* context, const pvtCandidateOptions* options, pvtBuild* build);
-/// Checks what pvtCheckOccluder does not know of, and tells of panels on the surface.
-pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build);
+/// Checks what pvtCheckTriangles does not know of, and tells of panels on the surface. `outside` is
+/// what that found.
+pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build, const uint64_t* outside);
 void pvtBuild_Free(pvtContext* context, pvtBuild* build);
 
 #endif

@@ -21,6 +21,13 @@ pvtStatus pvtCopyBitGrid(pvtContext* context, const pvtBitGrid* grid, pvtBitGrid
 /// The smallest box around all set bits; false when there are none.
 bool pvtBitGrid_FindBounds(const pvtBitGrid* grid, pvtGridBox* box);
 
+/// The greatest of a grid's three sizes.
+static inline int pvtGetLongestSide(const int size[3])
+{
+    const int longer = size[0] > size[1] ? size[0] : size[1];
+    return longer > size[2] ? longer : size[2];
+}
+
 static inline double pvtGridBox_GetVolume(const pvtGridBox* box)
 {
     return (double)(box->upper[0] - box->lower[0]) * (double)(box->upper[1] - box->lower[1]) *
