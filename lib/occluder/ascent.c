@@ -27,13 +27,16 @@ enum {
     FIELD_RESOLUTION = 272, // nodes: a voxel each at the default resolution
     JUDGES = 256,           // sights
     SWEEPS = 3,
-    CONTACT_STEPS = 4,
+    CONTACT_STEPS = 8,
+    LATE_CONTACT_STEPS = 4,
     PRUNE_ROUNDS = 40, // in which the surplus at the start is taken away
 };
 
 static const float START_SOFTNESS = 30.0F; // [px]
-static const float START_REACH = 3.0F;     // [vx] at 256 along the longest side
-static const float GROWTH = 1.0F;          // triangles added in a cycle, as part of the budget
+static const float LATE_SOFTNESS = 3.0F;   // [px] below which contacts are looked for more closely
+static const float COARSE_PIECE = 8.0F, FINE_PIECE = 5.0F; // [vx]
+static const float START_REACH = 3.0F;                     // [vx] at 256 along the longest side
+static const float GROWTH = 1.0F; // triangles added in a cycle, as part of the budget
 static const float MOMENTUM = 0.9F, SQUARES = 0.98F;
 static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F; // [vx]
 static const float THIN_PART = 0.1F;
@@ -50,7 +53,7 @@ enum { PHASES = sizeof phases / sizeof *phases, CYCLES_PHASE = 1 };
 
 int pvtGetAscentStart(int budget)
 {
-    return 3 * budget;
+    return 2 * budget;
 }
 
 pvtVec3 pvtAscent_GetPlace(const pvtAscent* ascent, const float corner[3])
@@ -242,8 +245,12 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
     pvtPullCorners(context, &pull, &ascent->puller);
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
     // Contacts change slowly: they are looked for now and then, a little farther away.
-    pvtContactOptions contact = {.margins = ascent->margins, .band = AHEAD * ascent->reach};
-    if (ascent->contactAge++ % CONTACT_STEPS == 0) {
+    const bool isLate = ascent->softness < LATE_SOFTNESS;
+    pvtContactOptions contact = {.margins = ascent->margins,
+                                 .band = AHEAD * ascent->reach,
+                                 .piece = isLate ? FINE_PIECE : COARSE_PIECE,
+                                 .isAnew = ascent->contactAge == 0};
+    if (ascent->contactAge++ % (isLate ? LATE_CONTACT_STEPS : CONTACT_STEPS) == 0) {
         pvtFindContacts(context, &contact, &ascent->field, &ascent->set, &ascent->contacts);
     } else {
         pvtUpdateContacts(&ascent->field, &ascent->set, &ascent->contacts);

@@ -1,37 +1,44 @@
 // SPDX-License-Identifier: MIT
 // Position-based constraints (Müller et al., Position Based Dynamics, 2007). A triangle is cut into
 // four again and again; pieces that are deeper inside than they are large are done with, and what
-// is left at the border has the size of a few voxels. A contact moves the corners of its triangle
-// by their share in it.
+// is left at the border has the size of a few voxels. Each of these is probed at one point, another
+// one each time, and what was found is kept: so after a few times there is no bump between the
+// points. A contact moves the corners of its triangle by their share in it.
 #include "contacts.h"
 
 #include "base/context.h"
+#include "base/random.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MOST_SPLITS = 7, GROUP = 4 };
+enum { MOST_SPLITS = 7, GROUP = 4, STREAM = 0xC047 };
 
-// Pieces are not cut further below this along a side: what lies along a wall as a whole would be
-// cut into too many.
-static const float PIECE = 5.0F;        // [vx]
-static const float FARTHEST = 0.67F;    // of the longest side: from the middle to a corner
+static const float FARTHEST = 0.67F; // of the longest side: from the middle to a corner
+// Pieces are not cut further below this: what lies along a wall as a whole would be cut into too
+// many.
 static const float PART = 1.0F / 12.0F; // of the triangle's side
 
 void pvtContactSet_Free(pvtContext* context, pvtContactSet* contacts)
 {
     pvtRelease(context, contacts->contacts);
     pvtRelease(context, contacts->counts);
+    pvtRelease(context, contacts->known);
+    pvtRelease(context, contacts->kinds);
     *contacts = (pvtContactSet){0};
 }
 
 pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContactSet* contacts)
 {
+    const size_t triangles = (size_t)triangleCapacity;
+    const size_t points = triangles * PVT_MOST_CONTACTS;
     *contacts = (pvtContactSet){0};
-    contacts->contacts = pvtAllocate(context, (size_t)triangleCapacity * PVT_MOST_CONTACTS,
-                                     sizeof *contacts->contacts);
-    contacts->counts = pvtAllocate(context, (size_t)triangleCapacity, sizeof *contacts->counts);
-    if (contacts->contacts == NULL || contacts->counts == NULL) {
+    contacts->contacts = pvtAllocate(context, points, sizeof *contacts->contacts);
+    contacts->counts = pvtAllocate(context, triangles, sizeof *contacts->counts);
+    contacts->known = pvtAllocate(context, points, sizeof *contacts->known);
+    contacts->kinds = pvtAllocate(context, triangles, sizeof *contacts->kinds);
+    if (contacts->contacts == NULL || contacts->counts == NULL || contacts->known == NULL ||
+        contacts->kinds == NULL) {
         pvtContactSet_Free(context, contacts);
         return pvtContext_GetStatus(context);
     }
@@ -42,6 +49,8 @@ typedef struct Probe {
     const pvtField* field;
     float corners[3][3];
     float side;                      // [vx] the longest
+    float piece;                     // [vx] as the options tell
+    float at[2];                     // of a smallest piece: where it is probed, as parts of it
     float limit;                     // [vx] depth from which on points are of no interest
     float depths[PVT_MOST_CONTACTS]; // the least of each kind
     float shares[PVT_MOST_CONTACTS][3];
@@ -55,20 +64,22 @@ static void GetPoint(const float corners[3][3], const float shares[3], float poi
     }
 }
 
-// Corners are 0 to 2, the edges from them to the next 3 to 5, the rest 6.
+// Corners are 0 to 2, the halves of the edges 3 to 8, the quarters of the rest 9 to 12.
 static int GetKind(const float shares[3])
 {
+    int most = 0;
     for (int k = 0; k < 3; ++k) {
-        if (shares[k] > 0.999F) {
-            return k;
-        }
+        most = shares[k] > shares[most] ? k : most;
+    }
+    if (shares[most] > 0.999F) {
+        return most;
     }
     for (int k = 0; k < 3; ++k) {
         if (shares[k] < 0.001F) {
-            return 3 + (k + 1) % 3;
+            return 3 + 2 * k + (most == (k + 1) % 3 ? 1 : 0);
         }
     }
-    return 6;
+    return shares[most] > 0.5F ? 9 + most : 12;
 }
 
 static float ProbePoint(Probe* probe, const float shares[3])
@@ -84,16 +95,22 @@ static float ProbePoint(Probe* probe, const float shares[3])
     return depth;
 }
 
-// Of a smallest piece: pieces share their corners, so that each looks at the one which no piece
-// beside it does, and at those on the edge between corners 1 and 2.
-static void ProbeEnds(Probe* probe, const float at[2], float size)
+// One point of a smallest piece, and as many on the edges of the triangle that it has a part in.
+static void ProbeWithin(Probe* probe, const float at[2], float size)
 {
-    const float ends[3][2] = {{at[0], at[1]}, {at[0] + size, at[1]}, {at[0], at[1] + size}};
-    for (int k = 0; k < 3 && size > 0.0F; ++k) {
-        const float shares[3] = {1.0F - ends[k][0] - ends[k][1], ends[k][0], ends[k][1]};
-        if (k == 0 || shares[0] < 0.001F) {
-            ProbePoint(probe, shares);
-        }
+    const float u = at[0] + size * probe->at[0], v = at[1] + size * probe->at[1];
+    ProbePoint(probe, (float[3]){1.0F - u - v, u, v});
+    if (size < 0.0F) {
+        return;
+    }
+    if (at[0] < 0.001F) {
+        ProbePoint(probe, (float[3]){1.0F - v, 0.0F, v});
+    }
+    if (at[1] < 0.001F) {
+        ProbePoint(probe, (float[3]){1.0F - u, u, 0.0F});
+    }
+    if (at[0] + at[1] + size > 0.999F) {
+        ProbePoint(probe, (float[3]){0.0F, u, 1.0F - u});
     }
 }
 
@@ -108,8 +125,8 @@ static void ProbePiece(Probe* probe, const float at[2], float size, int splits)
     if (depth - FARTHEST * extent > probe->limit) {
         return;
     }
-    if (splits == 0 || extent < PIECE || fabsf(size) < PART) {
-        ProbeEnds(probe, at, size);
+    if (splits == 0 || extent < probe->piece || fabsf(size) < PART) {
+        ProbeWithin(probe, at, size);
         return;
     }
     const float half = 0.5F * size;
@@ -129,7 +146,12 @@ typedef struct ContactTask {
 static void StartProbe(const ContactTask* task, int triangle, Probe* probe)
 {
     *probe = (Probe){.field = task->field,
+                     .piece = task->options->piece,
                      .limit = task->options->margins[triangle] + task->options->band};
+    pvtRandom random = pvtMakeRandom(task->contacts->round, STREAM);
+    const float u = (float)pvtRandom_Unit(&random), v = (float)pvtRandom_Unit(&random);
+    probe->at[0] = u + v < 1.0F ? u : 1.0F - u;
+    probe->at[1] = u + v < 1.0F ? v : 1.0F - v;
     for (int k = 0; k < 3; ++k) {
         memcpy(probe->corners[k], task->set->corners[task->set->triangles[triangle][k]],
                sizeof probe->corners[k]);
@@ -149,35 +171,63 @@ static void StartProbe(const ContactTask* task, int triangle, Probe* probe)
     }
 }
 
+static void ProbeTriangle(const ContactTask* task, int triangle, Probe* probe)
+{
+    const pvtContactSet* set = task->contacts;
+    const float(*known)[3] = (const float(*)[3])set->known + (size_t)triangle * PVT_MOST_CONTACTS;
+    for (int k = 0; k < 3; ++k) {
+        ProbePoint(probe,
+                   (float[3]){k == 0 ? 1.0F : 0.0F, k == 1 ? 1.0F : 0.0F, k == 2 ? 1.0F : 0.0F});
+    }
+    for (int kind = 3; kind < PVT_MOST_CONTACTS && !task->options->isAnew; ++kind) {
+        if ((set->kinds[triangle] >> kind & 1) != 0) {
+            ProbePoint(probe, known[kind]);
+        }
+    }
+    ProbePiece(probe, (float[2]){0.0F, 0.0F}, 1.0F, MOST_SPLITS);
+}
+
+static int ListContacts(const ContactTask* task, int triangle, const Probe* probe)
+{
+    const pvtContactSet* set = task->contacts;
+    pvtContact* contacts = set->contacts + (size_t)triangle * PVT_MOST_CONTACTS;
+    int count = 0;
+    set->kinds[triangle] = 0;
+    for (int kind = 0; kind < PVT_MOST_CONTACTS; ++kind) {
+        if (!(probe->depths[kind] < probe->limit)) {
+            continue;
+        }
+        pvtContact* contact = &contacts[count++];
+        contact->triangle = triangle;
+        memcpy(contact->shares, probe->shares[kind], sizeof contact->shares);
+        memcpy(set->known[(size_t)triangle * PVT_MOST_CONTACTS + (size_t)kind], contact->shares,
+               sizeof contact->shares);
+        set->kinds[triangle] |= (uint16_t)(1U << kind);
+        float point[3];
+        GetPoint((const float(*)[3])probe->corners, contact->shares, point);
+        contact->depth = pvtField_GetDepthAndInward(task->field, point, contact->inward);
+    }
+    return count;
+}
+
 static void ProbeTriangles(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const ContactTask* task = taskData;
     for (int t = (int)begin; t < (int)end; ++t) {
-        pvtContact* contacts = task->contacts->contacts + (size_t)t * PVT_MOST_CONTACTS;
-        int count = 0;
         Probe probe;
         StartProbe(task, t, &probe);
         if (!pvtTriangleSet_IsFixed(task->set, t)) {
-            ProbePiece(&probe, (float[2]){0.0F, 0.0F}, 1.0F, MOST_SPLITS);
+            ProbeTriangle(task, t, &probe);
         }
-        for (int kind = 0; kind < PVT_MOST_CONTACTS; ++kind) {
-            if (probe.depths[kind] < probe.limit) {
-                pvtContact* contact = &contacts[count++];
-                contact->triangle = t;
-                memcpy(contact->shares, probe.shares[kind], sizeof contact->shares);
-                float point[3];
-                GetPoint((const float(*)[3])probe.corners, contact->shares, point);
-                contact->depth = pvtField_GetDepthAndInward(task->field, point, contact->inward);
-            }
-        }
-        task->contacts->counts[t] = count;
+        task->contacts->counts[t] = ListContacts(task, t, &probe);
     }
 }
 
 void pvtFindContacts(pvtContext* context, const pvtContactOptions* options, const pvtField* field,
                      const pvtTriangleSet* set, pvtContactSet* contacts)
 {
+    ++contacts->round;
     ContactTask task = {options, field, set, contacts};
     pvtParallelFor(context, ProbeTriangles, (size_t)set->triangleCount, GROUP, &task);
     contacts->count = 0;

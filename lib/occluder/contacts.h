@@ -6,8 +6,9 @@
 #include "field.h"
 #include "triangle_set.h"
 
-/// Of a triangle: its corners, the deepest point outwards of each edge, and of what is between.
-enum { PVT_MOST_CONTACTS = 7 };
+/// Of a triangle: its corners, and the point farthest outwards of each half of an edge and of each
+/// quarter of what is between.
+enum { PVT_MOST_CONTACTS = 13 };
 
 /// A point of a triangle that has come near the border.
 typedef struct pvtContact {
@@ -20,17 +21,23 @@ typedef struct pvtContact {
 typedef struct pvtContactSet {
     pvtContact* contacts; ///< in order of the triangles; those of fixed corners alone have none
     int count;
-    int* counts; ///< of each triangle
+    int* counts;       ///< of each triangle
+    float (*known)[3]; ///< triangle × kind of point: shares of those found the last time
+    uint16_t* kinds;   ///< of each triangle: bits of the kinds that are known
+    uint32_t round;    ///< how often contacts were looked for
 } pvtContactSet;
 
 typedef struct pvtContactOptions {
     const float* margins; ///< [vx] of each triangle: the depth that it is to keep
     float band;           ///< [vx] how near to that a contact begins
+    float piece;          ///< [vx] along a side: a triangle is probed once in pieces of this size
+    bool isAnew;          ///< the triangles are others than the last time
 } pvtContactOptions;
 
 pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContactSet* contacts);
 void pvtContactSet_Free(pvtContext* context, pvtContactSet* contacts);
 
+/// Looks at points between those of the last time, and again at those that were found then.
 void pvtFindContacts(pvtContext* context, const pvtContactOptions* options, const pvtField* field,
                      const pvtTriangleSet* set, pvtContactSet* contacts);
 /// Depths and directions anew, at the same points of the triangles.

@@ -20,6 +20,7 @@ enum {
     EDGE = 11,                           // to a neighbour across an edge, in eighths
     CORNER = 14,
     SIDES = 2,
+    BRICK = 4,
 };
 
 // Distances into one side, from the other one's nodes; rows have a node more at each end.
@@ -38,6 +39,7 @@ typedef struct Maker {
 void pvtField_Free(pvtContext* context, pvtField* field)
 {
     pvtRelease(context, field->depths);
+    pvtRelease(context, field->places[0]);
     *field = (pvtField){0};
 }
 
@@ -75,30 +77,77 @@ static int CountAllowed(const Maker* maker, int x, int y, int z)
     return count;
 }
 
-// All nodes of a layer, as far from the border as their own share tells.
+// A node's own share tells how far it is from the border; nodes as a whole on one side of it are
+// FAR on that side, and half a node away on the other.
+static void StartNode(const Maker* maker, int x, int y, int z, uint8_t* inside, uint8_t* outside)
+{
+    const int n = maker->field->nodeSize;
+    const int full = 64 * n * n * n;
+    const int count = CountAllowed(maker, x, y, z);
+    const int share = (2 * STEPS * count + full) / (2 * full) - STEPS / 2;
+    *inside = (uint8_t)(count < full ? ZERO + share : FAR);
+    *outside = (uint8_t)(count > 0 ? ZERO - share : FAR);
+}
+
+// Voxels of a node's rows that are allowed throughout, and those that are anywhere in part.
+typedef struct RowBits {
+    uint64_t all, some;
+} RowBits;
+
+static RowBits GetRowBits(const Maker* maker, int y, int z, size_t word)
+{
+    const int n = maker->field->nodeSize;
+    const int* size = maker->allowed->frame.size;
+    const bool isCut = (y + 1) * n > size[1] || (z + 1) * n > size[2];
+    RowBits bits = {isCut ? 0 : ~UINT64_C(0), 0};
+    for (int k = z * n; k < (z + 1) * n && k < size[2]; ++k) {
+        for (int j = y * n; j < (y + 1) * n && j < size[1]; ++j) {
+            const uint64_t allowed = pvtBitGrid_GetRow(maker->allowed, j, k)[word];
+            bits.all &= allowed;
+            bits.some |= allowed;
+            if (maker->cells != NULL) {
+                bits.some |= pvtBitGrid_GetRow(&maker->cells->voxels, j, k)[word];
+            }
+        }
+    }
+    return bits;
+}
+
+static void StartRow(const Maker* maker, int y, int z, uint8_t* inside, uint8_t* outside)
+{
+    const int n = maker->field->nodeSize, width = maker->field->size[0];
+    const int perWord = 64 / n;
+    const uint64_t node = pvtMakeMask(0, (unsigned)n);
+    for (int first = 0; first < width; first += perWord) {
+        const int count = width - first < perWord ? width - first : perWord;
+        const RowBits bits = GetRowBits(maker, y, z, (size_t)(first / perWord));
+        const bool isAll = bits.all == ~UINT64_C(0), isNone = bits.some == 0;
+        memset(inside + first, isAll ? FAR : ZERO - STEPS / 2, (size_t)count);
+        memset(outside + first, isNone ? FAR : ZERO - STEPS / 2, (size_t)count);
+        for (int i = 0; i < count && !isAll && !isNone; ++i) {
+            const uint64_t mask = node << (i * n);
+            if ((bits.some & mask) == 0) {
+                outside[first + i] = FAR;
+            } else if ((bits.all & mask) == mask) {
+                inside[first + i] = FAR;
+            } else {
+                StartNode(maker, first + i, y, z, inside + first + i, outside + first + i);
+            }
+        }
+    }
+}
+
 static void StartLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Maker* maker = taskData;
-    const int* size = maker->field->size;
-    const int n = maker->field->nodeSize;
-    const int full = 64 * n * n * n;
     for (int z = (int)begin; z < (int)end; ++z) {
-        for (int y = 0; y < size[1]; ++y) {
+        for (int y = 0; y < maker->field->size[1]; ++y) {
             uint8_t* inside = GetRow(&maker->sides[0], y, z);
             uint8_t* outside = GetRow(&maker->sides[1], y, z);
             memset(inside, FAR, (size_t)maker->sides[0].width);
             memset(outside, FAR, (size_t)maker->sides[0].width);
-            for (int x = 0; x < size[0]; ++x) {
-                const int count = CountAllowed(maker, x, y, z);
-                const int share = (2 * STEPS * count + full) / (2 * full) - STEPS / 2;
-                if (count < full) {
-                    inside[x + 1] = (uint8_t)(ZERO + share);
-                }
-                if (count > 0) {
-                    outside[x + 1] = (uint8_t)(ZERO - share);
-                }
-            }
+            StartRow(maker, y, z, inside + 1, outside + 1);
         }
     }
 }
@@ -177,20 +226,66 @@ static void SpreadSides(size_t begin, size_t end, int worker, void* taskData)
 
 // A node that is allowed in part has the same distance in both; what is clear as a whole counts as
 // half a node away from the inside, which is as low as that goes.
-static void JoinSides(const Maker* maker)
+static void JoinSides(size_t begin, size_t end, int worker, void* taskData)
 {
-    const int* size = maker->field->size;
-    int8_t* depths = maker->field->depths;
-    for (int z = 0; z < size[2]; ++z) {
-        for (int y = 0; y < size[1]; ++y) {
+    (void)worker;
+    const Maker* maker = taskData;
+    const pvtField* field = maker->field;
+    for (int z = (int)begin; z < (int)end; ++z) {
+        for (int y = 0; y < field->size[1]; ++y) {
             const uint8_t* inside = GetRow(&maker->sides[0], y, z) + 1;
             const uint8_t* outside = GetRow(&maker->sides[1], y, z) + 1;
-            for (int x = 0; x < size[0]; ++x) {
+            int8_t* row = field->depths + field->places[1][y] + field->places[2][z];
+            for (int x = 0; x < field->size[0]; ++x) {
                 const int in = inside[x] - ZERO, out = outside[x] - ZERO;
-                *depths++ = (int8_t)(in > -STEPS / 2 ? in : -out);
+                row[field->places[0][x]] = (int8_t)(in > -STEPS / 2 ? in : -out);
             }
         }
     }
+}
+
+// Both ends of the last pair of nodes may be looked at when there is one only.
+static pvtStatus MakePlaces(pvtContext* context, pvtField* field)
+{
+    size_t bricks[3], length = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        bricks[axis] = ((size_t)field->size[axis] + BRICK - 1) / BRICK;
+        length += (size_t)field->size[axis] + 1;
+    }
+    uint32_t* next = pvtAllocate(context, length, sizeof *next);
+    const size_t nodes = bricks[0] * bricks[1] * bricks[2] * BRICK * BRICK * BRICK;
+    field->places[0] = next;
+    field->depths = pvtAllocate(context, nodes, sizeof *field->depths);
+    if (next == NULL || field->depths == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    size_t within = 1, brick = BRICK * BRICK * BRICK;
+    for (int axis = 0; axis < 3; ++axis) {
+        const size_t count = (size_t)field->size[axis];
+        field->places[axis] = next;
+        for (size_t i = 0; i <= count; ++i) {
+            const size_t at = i < count ? i : count - 1;
+            *next++ = (uint32_t)(at % BRICK * within + at / BRICK * brick);
+        }
+        within *= BRICK;
+        brick *= bricks[axis];
+    }
+    return PVT_OK;
+}
+
+static pvtStatus MakeSides(pvtContext* context, Maker* maker)
+{
+    const int* size = maker->field->size;
+    const size_t rows = (size_t)size[1] * (size_t)size[2];
+    for (int s = 0; s < SIDES; ++s) {
+        Side* side = &maker->sides[s];
+        *side = (Side){NULL, size[0] + 2, size[1], size[2]};
+        side->rows = pvtAllocate(context, rows, (size_t)side->width);
+        if (side->rows == NULL) {
+            return pvtContext_GetStatus(context);
+        }
+    }
+    return PVT_OK;
 }
 
 pvtStatus pvtCreateField(pvtContext* context, const pvtBitGrid* allowed, const pvtCellGrid* cells,
@@ -203,24 +298,18 @@ pvtStatus pvtCreateField(pvtContext* context, const pvtBitGrid* allowed, const p
     while (longest > resolution * field->nodeSize && field->nodeSize < 64) {
         field->nodeSize *= 2;
     }
-    size_t count = 1;
     for (int axis = 0; axis < 3; ++axis) {
         field->size[axis] = (size[axis] + field->nodeSize - 1) / field->nodeSize;
-        count *= (size_t)field->size[axis];
     }
     Maker maker = {allowed, cells != NULL && cells->count > 0 ? cells : NULL, field, {{0}, {0}}};
-    field->depths = pvtAllocate(context, count, sizeof *field->depths);
-    pvtStatus status = field->depths == NULL ? pvtContext_GetStatus(context) : PVT_OK;
-    for (int s = 0; s < SIDES && status == PVT_OK; ++s) {
-        Side* side = &maker.sides[s];
-        *side = (Side){NULL, field->size[0] + 2, field->size[1], field->size[2]};
-        side->rows = pvtAllocate(context, count / (size_t)field->size[0], (size_t)side->width);
-        status = side->rows == NULL ? pvtContext_GetStatus(context) : PVT_OK;
+    pvtStatus status = MakePlaces(context, field);
+    if (status == PVT_OK) {
+        status = MakeSides(context, &maker);
     }
     if (status == PVT_OK) {
         pvtParallelFor(context, StartLayers, (size_t)field->size[2], 4, &maker);
         pvtParallelFor(context, SpreadSides, SIDES, 1, &maker);
-        JoinSides(&maker);
+        pvtParallelFor(context, JoinSides, (size_t)field->size[2], 4, &maker);
     } else {
         pvtField_Free(context, field);
     }
@@ -238,8 +327,7 @@ float pvtField_GetDepthAndInward(const pvtField* field, const float point[3], fl
     pvtMixAlongX(&place, x);
     float slopes[4];
     for (size_t i = 0; i < 4; ++i) {
-        const int8_t* nodes = place.nodes + (i & 1) * place.row + (i >> 1) * place.layer;
-        slopes[i] = (float)(nodes[1] - nodes[0]);
+        slopes[i] = place.nodes[2 * i + 1] - place.nodes[2 * i];
     }
     inward[0] = pvtMix(pvtMix(slopes[0], slopes[1], part[1]), pvtMix(slopes[2], slopes[3], part[1]),
                        part[2]);

@@ -9,19 +9,29 @@
 #include "base/context.h"
 #include "base/random.h"
 #include "base/vector.h"
+#include "base/vectors.h"
 #include "occlusion/stride.h"
 
 #include <string.h>
 
-enum { SIZE = PVT_SIGHT_SIZE, MARGIN = 2, STREAM = 0x51675 };
+enum {
+    SIZE = PVT_SIGHT_SIZE,
+    MARGIN = 2,
+    STREAM = 0x51675,
+    EXPOSURES = 64, // sets of sides of a node
+    GROUP = 64,     // points that are projected at once
+};
+
+static const float WIDENING = 1.2F; // of nodes, which are seen as squares: cubes cover more
 
 typedef struct Splatter {
     pvtContext* context;
     const pvtSightOptions* options;
-    float (*points)[3]; // [vx] border nodes
+    float* points[3]; // [vx] nodes beside some that are not inside, along each axis
     size_t pointCount;
-    float nodeSize;        // [vx]
-    float low[3], high[3]; // [vx] around the points
+    size_t starts[EXPOSURES + 1]; // in the points, by the sides that they are exposed on
+    float nodeSize;               // [vx]
+    float low[3], high[3];        // [vx] around the points
     const pvtViewSet* views;
     pvtSightSet* set;
     pvtSightQuad* drawn; // options->quads a sight
@@ -34,40 +44,115 @@ void pvtSightSet_Free(pvtContext* context, pvtSightSet* set)
     *set = (pvtSightSet){0};
 }
 
-// Inside, and not far from what is not.
-static bool IsBorder(int8_t depth)
+static bool IsInGrid(const pvtField* field, const int node[3])
 {
-    return depth > -PVT_FIELD_STEPS / 2 && depth <= PVT_FIELD_STEPS;
+    const int* size = field->size;
+    return node[0] >= 0 && node[1] >= 0 && node[2] >= 0 && node[0] < size[0] && node[1] < size[1] &&
+           node[2] < size[2];
 }
 
-static void AddPoint(Splatter* splatter, const pvtField* field, const int node[3])
+// The middle of such a node is inside, or less than half a node away from it.
+static bool IsIn(const pvtField* field, const int node[3])
 {
-    if (splatter->points != NULL) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const float at = ((float)node[axis] + 0.5F) * (float)field->nodeSize;
-            const float half = 0.5F * (float)field->nodeSize;
-            splatter->points[splatter->pointCount][axis] = at;
-            splatter->low[axis] = at - half < splatter->low[axis] ? at - half : splatter->low[axis];
-            splatter->high[axis] =
-                at + half > splatter->high[axis] ? at + half : splatter->high[axis];
-        }
-    }
-    ++splatter->pointCount;
+    return IsInGrid(field, node) &&
+           pvtField_GetNode(field, node[0], node[1], node[2]) > -PVT_FIELD_STEPS / 2;
 }
 
-static void ListBorder(Splatter* splatter, const pvtField* field)
+// Bit 2a: beside it towards lower coordinates along axis a is a node that is not inside; bit 2a + 1
+// the same towards higher ones.
+static unsigned FindExposure(const pvtField* field, const int node[3])
 {
-    const int8_t* depth = field->depths;
-    splatter->pointCount = 0;
-    for (int z = 0; z < field->size[2]; ++z) {
-        for (int y = 0; y < field->size[1]; ++y) {
-            for (int x = 0; x < field->size[0]; ++x) {
-                if (IsBorder(*depth++)) {
-                    AddPoint(splatter, field, (int[3]){x, y, z});
-                }
+    const bool isDeep = pvtField_GetNode(field, node[0], node[1], node[2]) > PVT_FIELD_STEPS;
+    unsigned exposure = 0;
+    for (int axis = 0; axis < 3 && IsIn(field, node); ++axis) {
+        for (int side = 0; side < 2; ++side) {
+            int beside[3] = {node[0], node[1], node[2]};
+            beside[axis] += side == 0 ? -1 : 1;
+            // What is a node or more inside has none but those beyond the grid.
+            if (isDeep ? !IsInGrid(field, beside) : !IsIn(field, beside)) {
+                exposure |= 1U << (2 * axis + side);
             }
         }
     }
+    return exposure;
+}
+
+typedef struct BorderTask {
+    const pvtField* field;
+    uint8_t* exposures; // of the nodes, x first
+} BorderTask;
+
+static void FindExposures(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const BorderTask* task = taskData;
+    const int* size = task->field->size;
+    uint8_t* next = task->exposures + begin * (size_t)size[0] * (size_t)size[1];
+    for (int z = (int)begin; z < (int)end; ++z) {
+        for (int y = 0; y < size[1]; ++y) {
+            for (int x = 0; x < size[0]; ++x) {
+                *next++ = (uint8_t)FindExposure(task->field, (int[3]){x, y, z});
+            }
+        }
+    }
+}
+
+static void AddPoint(Splatter* splatter, size_t place, const size_t node[3])
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        const float at = ((float)node[axis] + 0.5F) * splatter->nodeSize;
+        const float half = 0.5F * splatter->nodeSize;
+        splatter->points[axis][place] = at;
+        splatter->low[axis] = at - half < splatter->low[axis] ? at - half : splatter->low[axis];
+        splatter->high[axis] = at + half > splatter->high[axis] ? at + half : splatter->high[axis];
+    }
+}
+
+static pvtStatus SortPoints(pvtContext* context, const pvtField* field, const uint8_t* exposures,
+                            Splatter* splatter)
+{
+    const size_t width = (size_t)field->size[0], height = (size_t)field->size[1];
+    const size_t count = width * height * (size_t)field->size[2];
+    size_t next[EXPOSURES] = {0};
+    for (size_t i = 0; i < count; ++i) {
+        ++next[exposures[i]];
+    }
+    next[0] = 0; // no points
+    for (size_t e = 0; e < EXPOSURES; ++e) {
+        splatter->starts[e] = splatter->pointCount;
+        splatter->pointCount += next[e];
+        next[e] = splatter->starts[e];
+    }
+    splatter->starts[EXPOSURES] = splatter->pointCount;
+    for (int axis = 0; axis < 3; ++axis) {
+        splatter->points[axis] =
+            pvtAllocate(context, splatter->pointCount, sizeof *splatter->points[axis]);
+        splatter->low[axis] = (float)field->size[axis] * splatter->nodeSize;
+        if (splatter->points[axis] == NULL) {
+            return pvtContext_GetStatus(context);
+        }
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (exposures[i] != 0) {
+            const size_t node[3] = {i % width, i / width % height, i / width / height};
+            AddPoint(splatter, next[exposures[i]]++, node);
+        }
+    }
+    return PVT_OK;
+}
+
+static pvtStatus ListBorder(pvtContext* context, const pvtField* field, Splatter* splatter)
+{
+    const size_t count = (size_t)field->size[0] * (size_t)field->size[1] * (size_t)field->size[2];
+    BorderTask task = {field, pvtAllocate(context, count, 1)};
+    splatter->nodeSize = (float)field->nodeSize;
+    if (task.exposures == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    pvtParallelFor(context, FindExposures, (size_t)field->size[2], 4, &task);
+    const pvtStatus status = SortPoints(context, field, task.exposures, splatter);
+    pvtRelease(context, task.exposures);
+    return status;
 }
 
 static void ToFloats(pvtVec3 from, double scale, float to[3])
@@ -119,33 +204,89 @@ static uint64_t PackEven(uint64_t bits)
     return (bits | bits >> 16) & UINT64_C(0x00000000FFFFFFFF);
 }
 
+// [half px] on the screen.
+PVT_VECTOR_CLONES
+static void ProjectPoints(const Splatter* splatter, const pvtSight* sight, size_t first,
+                          size_t count, float (*restrict places)[GROUP])
+{
+    const float* x = splatter->points[0] + first;
+    const float* y = splatter->points[1] + first;
+    const float* z = splatter->points[2] + first;
+    for (size_t i = 0; i < count; ++i) {
+        places[0][i] = 2.0F * (x[i] * sight->right[0] + y[i] * sight->right[1] +
+                               z[i] * sight->right[2] + sight->x);
+        places[1][i] =
+            2.0F * (x[i] * sight->up[0] + y[i] * sight->up[1] + z[i] * sight->up[2] + sight->y);
+    }
+}
+
 // Sets the half pixels that a node covers, seen as a square; a small one sets that of its middle.
 static void SplatNode(uint64_t (*halves)[2], float x, float y, float reach)
 {
-    const int left = (int)(x - reach + 0.5F), right = (int)(x + reach + 0.5F);
-    const int low = (int)(y - reach + 0.5F), high = (int)(y + reach + 0.5F);
-    if (x < 0.0F || y < 0.0F || x >= 2 * SIZE || y >= 2 * SIZE) {
+    pvtSetBit(halves[(int)y], (size_t)x);
+    if (reach <= 0.5F * WIDENING) {
         return;
     }
-    pvtSetBit(halves[(int)y], (size_t)x);
+    const int left = (int)(x - reach + 0.5F), right = (int)(x + reach + 0.5F);
+    const int low = (int)(y - reach + 0.5F), high = (int)(y + reach + 0.5F);
     for (int row = low > 0 ? low : 0; row < high && row < 2 * SIZE && left < right; ++row) {
         pvtSetBitRange(halves[row], left > 0 ? (size_t)left : 0,
                        right < 2 * SIZE ? (size_t)right : 2 * SIZE);
     }
 }
 
+static void SplatPoints(const Splatter* splatter, const pvtSight* sight, size_t begin, size_t end,
+                        uint64_t (*halves)[2])
+{
+    const float reach = WIDENING * splatter->nodeSize / sight->pixelSize;
+    float places[2][GROUP];
+    for (size_t first = begin; first < end; first += GROUP) {
+        const size_t count = end - first < GROUP ? end - first : GROUP;
+        ProjectPoints(splatter, sight, first, count, places);
+        for (size_t i = 0; i < count; ++i) {
+            const float x = places[0][i], y = places[1][i];
+            if (x >= 0.0F && y >= 0.0F && x < 2 * SIZE && y < 2 * SIZE) {
+                SplatNode(halves, x, y, reach);
+            }
+        }
+    }
+}
+
+// Nodes are as far from each other as half pixels are: one between two that are set is set, too.
+static void FillGaps(uint64_t (*halves)[2])
+{
+    uint64_t before[2] = {0};
+    for (int y = 0; y < 2 * SIZE; ++y) {
+        const uint64_t low = halves[y][0], high = halves[y][1];
+        const uint64_t sides[2] = {(low << 1) & (low >> 1 | high << 63),
+                                   (high << 1 | low >> 63) & high >> 1};
+        for (int word = 0; word < 2; ++word) {
+            const uint64_t after = y + 1 < 2 * SIZE ? halves[y + 1][word] : 0;
+            const uint64_t here = halves[y][word];
+            halves[y][word] |= sides[word] | (before[word] & after);
+            before[word] = here;
+        }
+    }
+}
+
 // On pixels of half the size, four of which have to be set: a pixel that is covered in part only
-// could never be hidden as a whole.
-static void SplatGoal(const Splatter* splatter, pvtSight* sight)
+// could never be hidden as a whole. Whatever is seen is entered through a side that faces the
+// viewer, so that nodes that are exposed on other sides only are left out.
+static void SplatGoal(const Splatter* splatter, pvtVec3 direction, pvtSight* sight)
 {
     uint64_t halves[2 * SIZE][2];
     memset(halves, 0, sizeof halves);
-    const float reach = splatter->nodeSize / sight->pixelSize;
-    for (size_t i = 0; i < splatter->pointCount; ++i) {
-        const float* point = splatter->points[i];
-        SplatNode(halves, 2.0F * (Dot(point, sight->right) + sight->x),
-                  2.0F * (Dot(point, sight->up) + sight->y), reach);
+    unsigned facing = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double along = pvtGetAxis(direction, axis);
+        facing |= (along < 0.0 ? 1U : along > 0.0 ? 2U : 0U) << (2 * axis);
     }
+    for (unsigned e = 1; e < EXPOSURES; ++e) {
+        if ((e & facing) != 0) {
+            SplatPoints(splatter, sight, splatter->starts[e], splatter->starts[e + 1], halves);
+        }
+    }
+    FillGaps(halves);
     for (size_t y = 0; y < SIZE; ++y) {
         uint64_t row = 0;
         for (size_t word = 0; word < 2; ++word) {
@@ -210,7 +351,7 @@ static void MakeSightRange(size_t begin, size_t end, int worker, void* taskData)
         const pvtView* view = &views->views[s * stride % splatter->set->count % views->count];
         sight->weight = (float)(view->weight * (double)views->count);
         AimSight(splatter, view, &random, sight);
-        SplatGoal(splatter, sight);
+        SplatGoal(splatter, view->direction, sight);
         DrawQuads(splatter, &random, sight, splatter->drawn + s * (size_t)splatter->options->quads);
     }
 }
@@ -237,21 +378,17 @@ static pvtStatus PackQuads(pvtContext* context, const Splatter* splatter)
 
 static pvtStatus FillSights(pvtContext* context, Splatter* splatter, const pvtField* field)
 {
-    splatter->nodeSize = (float)field->nodeSize;
-    ListBorder(splatter, field);
-    splatter->points = pvtAllocate(context, splatter->pointCount, sizeof *splatter->points);
+    const pvtStatus status = ListBorder(context, field, splatter);
+    if (status != PVT_OK) {
+        return status;
+    }
     splatter->drawn = pvtAllocate(context, splatter->set->count * (size_t)splatter->options->quads,
                                   sizeof *splatter->drawn);
     splatter->set->sights =
         pvtAllocate(context, splatter->set->count, sizeof *splatter->set->sights);
-    if (splatter->points == NULL || splatter->drawn == NULL || splatter->set->sights == NULL) {
+    if (splatter->drawn == NULL || splatter->set->sights == NULL) {
         return pvtContext_GetStatus(context);
     }
-    for (int axis = 0; axis < 3; ++axis) {
-        splatter->low[axis] = (float)(field->size[axis] * field->nodeSize);
-        splatter->high[axis] = 0.0F;
-    }
-    ListBorder(splatter, field);
     pvtParallelFor(context, MakeSightRange, splatter->set->count, 1, splatter);
     return pvtIsCancelled(context) ? pvtFailCancelled(context) : PackQuads(context, splatter);
 }
@@ -268,7 +405,9 @@ pvtStatus pvtCreateSights(pvtContext* context, const pvtSightOptions* options,
     if (status == PVT_OK) {
         status = FillSights(context, &splatter, field);
     }
-    pvtRelease(context, splatter.points);
+    for (int axis = 0; axis < 3; ++axis) {
+        pvtRelease(context, splatter.points[axis]);
+    }
     pvtRelease(context, splatter.drawn);
     pvtViewSet_Free(context, &views);
     if (status != PVT_OK) {

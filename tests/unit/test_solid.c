@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Voxels as bytes, for slow and plain versions of what the library does with bits.
 typedef struct ByteGrid {
@@ -86,6 +87,25 @@ static ByteGrid DilateSlowly(const ByteGrid* grid, double squaredRadius)
         }
     }
     return dilated;
+}
+
+// Adds to `outside` all that is free beside it.
+static void WalkSlowly(const ByteGrid* blocked, ByteGrid* outside)
+{
+    ByteGrid before = MakeByteGrid(outside->size);
+    memcpy(before.voxels, outside->voxels, CountBytes(outside));
+    for (size_t i = 0; i < CountBytes(outside); ++i) {
+        int v[3];
+        ToVoxel(outside, i, v);
+        for (int side = 0; side < 6 && blocked->voxels[i] == 0; ++side) {
+            int n[3] = {v[0], v[1], v[2]};
+            n[side / 2] += side % 2 == 0 ? -1 : 1;
+            if (IsWithin(outside, n) && *At(&before, n) != 0) {
+                outside->voxels[i] = 1;
+            }
+        }
+    }
+    free(before.voxels);
 }
 
 static ByteGrid ToBytes(const pvtBitGrid* grid)
@@ -226,9 +246,10 @@ static void a_ball_reaches_what_slow_dilation_and_flood_reach(void** state)
     pvtContext* context = CreateTestContext(2);
     pvtRandom random = pvtMakeRandom(7, 0);
     static const double holes[] = {1.9, 2.0, 2.9, 3.0, 4.0, 5.5};
-    for (int round = 0; round < 12; ++round) {
+    for (int round = 0; round < 24; ++round) {
         pvtSolidOptions options = pvtDefaultSolidOptions();
         options.smallestHole = holes[round % 6];
+        options.strict = round % 2 != round / 6 % 2;
         const double radius = 0.5 * (options.smallestHole + 0.5);
         const double squaredRadius = radius * radius;
         pvtBitGrid surface;
@@ -243,6 +264,9 @@ static void a_ball_reaches_what_slow_dilation_and_flood_reach(void** state)
         ByteGrid closed = DilateSlowly(&bytes, squaredRadius);
         ByteGrid reached = FloodSlowly(&closed);
         ByteGrid outside = DilateSlowly(&reached, squaredRadius);
+        for (int step = 0; step < 2 && options.strict; ++step) {
+            WalkSlowly(&bytes, &outside);
+        }
         for (size_t i = 0; i < CountBytes(&outside); ++i) {
             outside.voxels[i] ^= 1;
         }
@@ -254,6 +278,29 @@ static void a_ball_reaches_what_slow_dilation_and_flood_reach(void** state)
         pvtSolid_Free(context, &solid);
         pvtBitGrid_Free(context, &surface);
     }
+    DestroyTestContext(context);
+}
+
+// A block with a wide groove along the top.
+static void strict_leaves_nothing_in_shallow_creases(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtBitGrid surface;
+    MakeEmptyGrid(context, 80, 80, 60, &surface);
+    for (int y = 15; y < 65; ++y) {
+        for (int x = 15; x < 65; ++x) {
+            for (int z = 15; z < 30 + abs(x - 40); ++z) {
+                SetVoxel(&surface, x, y, z);
+            }
+        }
+    }
+    pvtSolidOptions options = pvtDefaultSolidOptions();
+    options.smallestHole = 12.0;
+    assert_true(CountStrict(context, &surface, options) > 100);
+    options.strict = true;
+    assert_int_equal(CountStrict(context, &surface, options), 0);
+    pvtBitGrid_Free(context, &surface);
     DestroyTestContext(context);
 }
 
@@ -537,6 +584,7 @@ int main(void)
         cmocka_unit_test(a_winding_tunnel_lets_the_flood_in),
         cmocka_unit_test(a_straight_tunnel_of_several_words_is_flooded_from_either_end),
         cmocka_unit_test(a_ball_reaches_what_slow_dilation_and_flood_reach),
+        cmocka_unit_test(strict_leaves_nothing_in_shallow_creases),
         cmocka_unit_test(holes_narrower_than_the_ball_close_and_wider_ones_do_not),
         cmocka_unit_test(the_result_does_not_depend_on_the_padding),
         cmocka_unit_test(the_ground_closes_a_box_without_a_floor),

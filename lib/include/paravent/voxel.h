@@ -58,6 +58,8 @@ typedef struct pvtSolidOptions {
     pvtAxis up;          ///< for ground and terrain; default y
     int enclosed;        ///< 0 to 25 of the 26 directions: an outside voxel from which at most this
                          ///< many escape counts as inside; −1: off; default −1
+    bool strict; ///< outside is what a walk of 2 voxels reaches from where a ball comes, too:
+                 ///< no fillets stick out of shallow creases; default false
 } pvtSolidOptions;
 
 /// What would fill a solid that came out hollow; all 0 when it is not, or when nothing would.
