@@ -7,9 +7,9 @@
 // other views, there is nothing to gain from the pixels of any of them.
 //
 // More triangles than the budget has start, and the least useful are taken away while the others
-// move on: those that are left had the choice of their places. In cycles triangles are added where
-// most is left to hide, and as many taken away (restructure.c). At last the mesh, which has been
-// inside but for a fraction of a voxel, settles until the exact test agrees (settle.c).
+// move on: those that are left had the choice of their places (climb.c, restructure.c). At last the
+// mesh, which has been inside but for a fraction of a voxel, settles until the exact test agrees
+// (settle.c).
 #include "ascent.h"
 #include "ascent_state.h"
 
@@ -25,31 +25,7 @@ enum {
     QUADS = 800,            // drawn a sight
     GOAL_RESOLUTION = 256,  // nodes, about twice as many as half pixels
     FIELD_RESOLUTION = 272, // nodes: a voxel each at the default resolution
-    JUDGES = 256,           // sights
-    SWEEPS = 3,
-    CONTACT_STEPS = 8,
-    LATE_CONTACT_STEPS = 4,
-    PRUNE_ROUNDS = 40, // in which the surplus at the start is taken away
 };
-
-static const float START_SOFTNESS = 30.0F; // [px]
-static const float LATE_SOFTNESS = 3.0F;   // [px] below which contacts are looked for more closely
-static const float COARSE_PIECE = 8.0F, FINE_PIECE = 5.0F; // [vx]
-static const float START_REACH = 3.0F;                     // [vx] at 256 along the longest side
-static const float GROWTH = 1.0F; // triangles added in a cycle, as part of the budget
-static const float MOMENTUM = 0.9F, SQUARES = 0.98F;
-static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F; // [vx]
-static const float THIN_PART = 0.1F;
-static const float AHEAD = 2.0F;       // of a step
-static const float LEAST_PULL = 0.02F; // of the strongest: corners that are pulled less move less
-
-// Softness and reach fall by factors e^−x; shares of the iterations.
-static const struct {
-    double share;
-    float softness, reach;
-} phases[] = {{0.5, 2.3F, 1.8F}, {0.1, 0.0F, 0.0F}, {0.4, 1.1F, 1.6F}};
-
-enum { PHASES = sizeof phases / sizeof *phases, CYCLES_PHASE = 1 };
 
 int pvtGetAscentStart(int budget)
 {
@@ -68,7 +44,6 @@ pvtVec3 pvtAscent_GetPlace(const pvtAscent* ascent, const float corner[3])
 static void FreeAscent(pvtContext* context, pvtAscent* ascent)
 {
     pvtTriangleSet_Free(context, &ascent->set);
-    pvtTriangleSet_Free(context, &ascent->before);
     pvtTriangleSet_Free(context, &ascent->start);
     pvtTriangleSet_Free(context, &ascent->best);
     pvtField_Free(context, &ascent->field);
@@ -78,7 +53,6 @@ static void FreeAscent(pvtContext* context, pvtAscent* ascent)
     pvtRelease(context, ascent->margins);
     pvtRelease(context, ascent->speeds);
     pvtRelease(context, ascent->squares);
-    pvtRelease(context, ascent->squaresBefore);
     pvtRelease(context, ascent->moved);
     pvtRelease(context, ascent);
 }
@@ -123,7 +97,7 @@ static pvtStatus MakeRoom(pvtContext* context, const pvtOccluder* occluder, pvtA
     const int grown = 2 * ascent->options->budget + 8;
     const int triangles = start > grown ? start : grown;
     const size_t corners = 3 * (size_t)triangles;
-    pvtTriangleSet* const sets[] = {&ascent->set, &ascent->before, &ascent->start, &ascent->best};
+    pvtTriangleSet* const sets[] = {&ascent->set, &ascent->start, &ascent->best};
     pvtStatus status = PVT_OK;
     for (size_t i = 0; i < sizeof sets / sizeof *sets && status == PVT_OK; ++i) {
         status = pvtCreateTriangleSet(context, (int)corners, triangles, sets[i]);
@@ -134,11 +108,9 @@ static pvtStatus MakeRoom(pvtContext* context, const pvtOccluder* occluder, pvtA
     ascent->margins = pvtAllocate(context, (size_t)triangles, sizeof *ascent->margins);
     ascent->speeds = pvtAllocate(context, corners, sizeof *ascent->speeds);
     ascent->squares = pvtAllocate(context, corners, sizeof *ascent->squares);
-    ascent->squaresBefore = pvtAllocate(context, corners, sizeof *ascent->squares);
     ascent->moved = pvtAllocate(context, corners, sizeof *ascent->moved);
-    return status == PVT_OK &&
-                   (ascent->margins == NULL || ascent->speeds == NULL || ascent->squares == NULL ||
-                    ascent->squaresBefore == NULL || ascent->moved == NULL)
+    return status == PVT_OK && (ascent->margins == NULL || ascent->speeds == NULL ||
+                                ascent->squares == NULL || ascent->moved == NULL)
                ? pvtContext_GetStatus(context)
                : status;
 }
@@ -179,230 +151,6 @@ static pvtStatus Prepare(pvtContext* context, const pvtOccluder* occluder, pvtAs
         pvtTriangleSet_Copy(&ascent->set, &ascent->start);
     }
     return status;
-}
-
-// From the start again, and from other sights on: that is enough to end elsewhere.
-static void BeginTry(pvtAscent* ascent, int attempt)
-{
-    const int* size = ascent->frame.size;
-    const int longest = pvtGetLongestSide(size);
-    ascent->softness = START_SOFTNESS;
-    ascent->reach = START_REACH * (float)longest / 256.0F;
-    ascent->next = ascent->sights.count * (size_t)attempt / (size_t)ascent->options->tries;
-    ascent->contactAge = 0;
-    pvtTriangleSet_Copy(&ascent->start, &ascent->set);
-    const size_t corners = (size_t)ascent->set.cornerCapacity;
-    memset(ascent->speeds, 0, corners * sizeof *ascent->speeds);
-    memset(ascent->squares, 0, corners * sizeof *ascent->squares);
-}
-
-// Where the inside is thin, steps are short: a fraction of how deep it is a little farther in.
-static float LimitReach(const pvtAscent* ascent, const float corner[3])
-{
-    float inward[3], deeper[3];
-    pvtField_GetDepthAndInward(&ascent->field, corner, inward);
-    for (int axis = 0; axis < 3; ++axis) {
-        deeper[axis] = corner[axis] + THIN_LOOK * inward[axis];
-    }
-    const float depth = pvtField_GetDepth(&ascent->field, deeper);
-    const float most = THIN_LEAST + THIN_PART * (depth > 0.0F ? depth : 0.0F);
-    return ascent->reach < most ? ascent->reach : most;
-}
-
-// The mean pull over the root of its mean square: about 1 for a corner that is always pulled the
-// same way, and next to nothing for one that is pulled to and fro.
-static void MoveCorners(pvtAscent* ascent)
-{
-    pvtTriangleSet* set = &ascent->set;
-    float most = 0.0F;
-    for (int c = 0; c < set->cornerCount; ++c) {
-        float* speed = ascent->speeds[c];
-        float square = 0.0F;
-        for (int axis = 0; axis < 3; ++axis) {
-            const float pull = ascent->puller.corners[c][axis];
-            speed[axis] = MOMENTUM * speed[axis] + (1.0F - MOMENTUM) * pull;
-            square += pull * pull;
-        }
-        ascent->squares[c] = SQUARES * ascent->squares[c] + (1.0F - SQUARES) * square;
-        most = ascent->squares[c] > most ? ascent->squares[c] : most;
-    }
-    for (int c = 0; c < set->cornerCount && most > 0.0F; ++c) {
-        const float scale = LimitReach(ascent, set->corners[c]) /
-                            (sqrtf(ascent->squares[c]) + LEAST_PULL * sqrtf(most));
-        for (int axis = 0; axis < 3 && !set->isFixed[c]; ++axis) {
-            set->corners[c][axis] += scale * ascent->speeds[c][axis];
-        }
-    }
-}
-
-void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
-{
-    const pvtPullOptions pull = {.first = ascent->next,
-                                 .count = ascent->options->batch,
-                                 .softness = ascent->softness,
-                                 .inset = PVT_ASCENT_INSET,
-                                 .wantsEdges = wantsEdges};
-    pvtPullCorners(context, &pull, &ascent->puller);
-    ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
-    // Contacts change slowly: they are looked for now and then, a little farther away.
-    const bool isLate = ascent->softness < LATE_SOFTNESS;
-    pvtContactOptions contact = {.margins = ascent->margins,
-                                 .band = AHEAD * ascent->reach,
-                                 .piece = isLate ? FINE_PIECE : COARSE_PIECE,
-                                 .isAnew = ascent->contactAge == 0};
-    if (ascent->contactAge++ % (isLate ? LATE_CONTACT_STEPS : CONTACT_STEPS) == 0) {
-        pvtFindContacts(context, &contact, &ascent->field, &ascent->set, &ascent->contacts);
-    } else {
-        pvtUpdateContacts(&ascent->field, &ascent->set, &ascent->contacts);
-    }
-    contact.band = ascent->reach;
-    for (int c = 0; c < ascent->set.cornerCount; ++c) {
-        if (ascent->set.isFixed[c]) {
-            memset(ascent->puller.corners[c], 0, sizeof ascent->puller.corners[c]);
-        }
-    }
-    pvtSlideAlong(&contact, &ascent->contacts, &ascent->set, SWEEPS, ascent->puller.corners);
-    MoveCorners(ascent);
-    pvtPushInside(&ascent->contacts, &ascent->field, ascent->margins, SWEEPS, &ascent->set);
-}
-
-double pvtAscent_Judge(pvtContext* context, pvtAscent* ascent)
-{
-    double sum = 0.0;
-    for (size_t first = 0; first < JUDGES; first += PVT_MOST_BATCH) {
-        const pvtPullOptions pull = {.first = first,
-                                     .count = PVT_MOST_BATCH,
-                                     .softness = ascent->softness,
-                                     .inset = PVT_ASCENT_INSET};
-        pvtPullCorners(context, &pull, &ascent->puller);
-        sum += ascent->puller.share;
-    }
-    return sum * PVT_MOST_BATCH / JUDGES;
-}
-
-// A cycle that lost is undone; corners start anew from rest.
-static void EndCycle(pvtContext* context, pvtAscent* ascent)
-{
-    const double worth = pvtAscent_Judge(context, ascent);
-    if (worth < ascent->worth) {
-        ascent->contactAge = 0;
-        pvtTriangleSet_Copy(&ascent->before, &ascent->set);
-        memset(ascent->speeds, 0, (size_t)ascent->set.cornerCount * sizeof *ascent->speeds);
-        memcpy(ascent->squares, ascent->squaresBefore,
-               (size_t)ascent->set.cornerCount * sizeof *ascent->squares);
-    }
-}
-
-static void BeginCycle(pvtContext* context, pvtAscent* ascent)
-{
-    pvtTriangleSet_Copy(&ascent->set, &ascent->before);
-    memcpy(ascent->squaresBefore, ascent->squares,
-           (size_t)ascent->set.cornerCount * sizeof *ascent->squares);
-    ascent->worth = pvtAscent_Judge(context, ascent);
-}
-
-// How many triangles there are to be at a time of the first phase, 0 to 1.
-static int GetStartCount(const pvtAscent* ascent, int start, double time)
-{
-    const int budget = ascent->options->budget;
-    const double surplus = start - budget;
-    const double left = 1.0 - time;
-    return start <= budget ? start : budget + (int)(surplus * left * left);
-}
-
-// A cycle is a quarter of growing, a half of pruning, and a quarter of rest.
-static int GetCycleCount(const pvtAscent* ascent, double time)
-{
-    const double left = time < 0.25 ? 1.0 : time < 0.75 ? (0.75 - time) / 0.5 : 0.0;
-    return ascent->options->budget + (int)((double)GROWTH * ascent->options->budget * left * left);
-}
-
-typedef struct Clock {
-    int iteration, end; // of the phase
-    int start;          // triangles at its start
-} Clock;
-
-static void RunPhaseStep(pvtContext* context, pvtAscent* ascent, int phase, const Clock* clock)
-{
-    const int count = ascent->set.triangleCount;
-    const double time = (double)clock->iteration / clock->end;
-    int wanted = ascent->options->budget;
-    bool grows = false;
-    if (phase == 0) {
-        const int round = clock->end / PRUNE_ROUNDS > 1 ? clock->end / PRUNE_ROUNDS : 1;
-        wanted = clock->iteration % round == 0 ? GetStartCount(ascent, clock->start, time) : count;
-    } else if (phase == CYCLES_PHASE && ascent->options->cycles > 0) {
-        const int cycle = clock->end / ascent->options->cycles + 1;
-        const int within = clock->iteration % cycle;
-        const int round = cycle / PRUNE_ROUNDS > 1 ? cycle / PRUNE_ROUNDS : 1;
-        if (within == 0 && clock->iteration > 0) {
-            EndCycle(context, ascent);
-        }
-        grows = within == 0 && clock->iteration + cycle / 2 < clock->end;
-        wanted = within % round == 0 ? GetCycleCount(ascent, (double)within / cycle) : count;
-    }
-    if (count > wanted) {
-        pvtAscent_Prune(context, ascent, wanted);
-    }
-    if (grows) {
-        BeginCycle(context, ascent);
-    }
-    pvtAscent_Step(context, ascent, grows);
-    if (grows) {
-        pvtAscent_Grow(ascent, GetCycleCount(ascent, 0.0) - ascent->set.triangleCount);
-    }
-}
-
-// False when time is up.
-static bool GoOn(pvtContext* context, const pvtAscent* ascent)
-{
-    const pvtAscentOptions* options = ascent->options;
-    const double share = (double)ascent->steps / options->iterations / options->tries;
-    pvtReportProgress(context, share < 1.0 ? share : 1.0);
-    if (options->deadline > 0.0 && pvtGetSeconds() > options->deadline) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the deadline ended the refinement after %.0f %% of its steps", 100.0 * share);
-        return false;
-    }
-    return true;
-}
-
-static bool Climb(pvtContext* context, pvtAscent* ascent)
-{
-    for (int phase = 0; phase < PHASES; ++phase) {
-        const bool isLeftOut = phase == CYCLES_PHASE && ascent->options->cycles == 0;
-        const double share = isLeftOut ? 0.0 : phases[phase].share;
-        Clock clock = {.end = (int)(share * ascent->options->iterations),
-                       .start = ascent->set.triangleCount};
-        for (; clock.iteration < clock.end; ++clock.iteration, ++ascent->steps) {
-            RunPhaseStep(context, ascent, phase, &clock);
-            ascent->softness *= 1.0F - phases[phase].softness / (float)clock.end;
-            ascent->reach *= 1.0F - phases[phase].reach / (float)clock.end;
-            if (pvtIsCancelled(context) || !GoOn(context, ascent)) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-static pvtStatus RunTries(pvtContext* context, pvtAscent* ascent)
-{
-    bool goesOn = true;
-    for (int attempt = 0; attempt < ascent->options->tries && goesOn; ++attempt) {
-        BeginTry(ascent, attempt);
-        goesOn = Climb(context, ascent);
-        if (ascent->set.triangleCount > ascent->options->budget) {
-            pvtAscent_Prune(context, ascent, ascent->options->budget);
-        }
-        const double worth = pvtAscent_Judge(context, ascent);
-        if (attempt == 0 || worth > ascent->bestWorth) {
-            ascent->bestWorth = worth;
-            pvtTriangleSet_Copy(&ascent->set, &ascent->best);
-        }
-    }
-    pvtTriangleSet_Copy(&ascent->best, &ascent->set);
-    return pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
 }
 
 // Polygons of which no triangle is left go; the others stay in order.
@@ -462,7 +210,7 @@ pvtStatus pvtAscendOccluder(pvtContext* context, const pvtAscentOptions* options
     ascent->frame = occluder->frame;
     pvtStatus status = Prepare(context, occluder, ascent);
     if (status == PVT_OK) {
-        status = RunTries(context, ascent);
+        status = pvtAscent_Climb(context, ascent);
     }
     if (status == PVT_OK) {
         status = pvtAscent_Settle(context, ascent);

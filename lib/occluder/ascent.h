@@ -15,7 +15,7 @@ typedef struct pvtAscentOptions {
     uint64_t seed;
     int tries;       ///< climbs from the same start, of which the best is kept
     int iterations;  ///< steps of all corners in each
-    int cycles;      ///< times that triangles are added and the least useful taken away again
+    int cycles;      ///< times that triangles are added to it and the least useful taken away again
     int sights;      ///< views to learn from
     int batch;       ///< of these that a step looks at, 1 to 64
     int polish;      ///< steps that follow the exact test, at last

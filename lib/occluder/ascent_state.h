@@ -17,15 +17,12 @@ typedef struct pvtAscent {
     pvtSightSet sights;
     pvtPuller puller;
     pvtContactSet contacts;
-    float* margins;     ///< [vx] of each triangle: the depth that it is to keep
-    float (*speeds)[3]; ///< of each corner: the running mean of its pulls
-    float* squares;     ///< of each corner: the running mean of their squares
-    float* squaresBefore;
-    int32_t* moved;        ///< scratch, one a corner
-    pvtTriangleSet before; ///< the set before a cycle
-    double worth;          ///< its worth, by pvtAscent_Judge
-    pvtTriangleSet start;  ///< what each try starts from
-    pvtTriangleSet best;   ///< of the tries
+    float* margins;       ///< [vx] of each triangle: the depth that it is to keep
+    float (*speeds)[3];   ///< of each corner: the running mean of its pulls
+    float* squares;       ///< of each corner: the running mean of their squares
+    int32_t* moved;       ///< scratch, one a corner
+    pvtTriangleSet start; ///< what each try starts from
+    pvtTriangleSet best;  ///< of the climbs and cycles
     double bestWorth;
     int steps;      ///< taken in all tries
     int contactAge; ///< steps since contacts were looked for; 0: look for them
@@ -39,8 +36,8 @@ void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count);
 /// Adds up to `count` triangles to the edges behind which there is most to hide; they start as
 /// slivers. Uses the puller's last pull, with its edges.
 void pvtAscent_Grow(pvtAscent* ascent, int count);
-/// What the triangles hide, as a share of all that can be: over the same sights each time.
-double pvtAscent_Judge(pvtContext* context, pvtAscent* ascent);
+/// All climbs and cycles; `set` is the best then.
+pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent);
 /// Pulls with the sights that come next, and moves all corners by a step.
 void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges);
 /// Moves triangles inwards until the inside test finds each inside, and then out again as far as it

@@ -6,8 +6,10 @@
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
+#include "base/vectors.h"
 #include "occlusion/distance.h"
 #include "occlusion/mask.h"
+#include "voxel/bit_grid.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,54 +21,63 @@ typedef struct CeilingTask {
     const pvtViewSet* views;
     const pvtBox3* bounds;
     int size;
-    const pvtVec3* points;
+    pvtGridFrame frame; // of the points
+    float* points[3];   // [vx] along each axis
     size_t pointCount;
     const uint32_t* table;
     double* results; // one a view
 } CeilingTask;
 
-// Set voxels of one word that have a clear neighbour; outside of the grid is clear.
-static uint64_t GetBorderWord(const pvtBitGrid* grid, size_t word, int y, int z)
+// Of a row that may be outside of the grid, the voxels that are set or have cells.
+static uint64_t GetSome(const pvtBitGrid* grid, const pvtCellGrid* cells, size_t word, int y, int z)
 {
-    const size_t perRow = grid->wordsPerRow;
-    const size_t row = ((size_t)z * (size_t)grid->frame.size[1] + (size_t)y) * perRow;
-    const uint64_t* words = grid->words + row;
-    const uint64_t here = words[word];
+    if (y < 0 || z < 0 || y >= grid->frame.size[1] || z >= grid->frame.size[2]) {
+        return 0;
+    }
+    const uint64_t finer = cells != NULL ? pvtBitGrid_GetRow(&cells->voxels, y, z)[word] : 0;
+    return pvtBitGrid_GetRow(grid, y, z)[word] | finer;
+}
+
+// Set voxels of one word that have a clear neighbour, without cells; outside of the grid is clear.
+static uint64_t GetBorderWord(const pvtBitGrid* grid, const pvtCellGrid* cells, size_t word, int y,
+                              int z)
+{
+    const uint64_t here = pvtBitGrid_GetRow(grid, y, z)[word];
     if (here == 0) {
         return 0;
     }
-    const size_t slab = (size_t)grid->frame.size[1] * perRow;
-    const uint64_t left = here << 1 | (word > 0 ? words[word - 1] >> 63 : 0);
-    const uint64_t right = here >> 1 | (word + 1 < perRow ? words[word + 1] << 63 : 0);
-    const uint64_t below = y > 0 ? *(words + word - perRow) : 0;
-    const uint64_t above = y + 1 < grid->frame.size[1] ? (words + perRow)[word] : 0;
-    const uint64_t front = z > 0 ? *(words + word - slab) : 0;
-    const uint64_t back = z + 1 < grid->frame.size[2] ? (words + slab)[word] : 0;
-    return here & ~(left & right & below & above & front & back);
+    const uint64_t some = GetSome(grid, cells, word, y, z);
+    const uint64_t before = word > 0 ? GetSome(grid, cells, word - 1, y, z) : 0;
+    const uint64_t after = word + 1 < grid->wordsPerRow ? GetSome(grid, cells, word + 1, y, z) : 0;
+    return here & ~((some << 1 | before >> 63) & (some >> 1 | after << 63) &
+                    GetSome(grid, cells, word, y - 1, z) & GetSome(grid, cells, word, y + 1, z) &
+                    GetSome(grid, cells, word, y, z - 1) & GetSome(grid, cells, word, y, z + 1));
 }
 
 // Counts, and stores when there is room.
 typedef struct PointList {
-    pvtVec3* points;
+    float** points; // [vx] one array an axis
     size_t count;
 } PointList;
 
 static void AddPoint(PointList* list, pvtVec3 point)
 {
     if (list->points != NULL) {
-        list->points[list->count] = point;
+        list->points[0][list->count] = (float)point.x;
+        list->points[1][list->count] = (float)point.y;
+        list->points[2][list->count] = (float)point.z;
     }
     ++list->count;
 }
 
-static void ListBorder(const pvtBitGrid* grid, int splits, PointList* list)
+static void ListBorder(const pvtBitGrid* grid, const pvtCellGrid* cells, int splits,
+                       PointList* list)
 {
-    const double h = grid->frame.voxelSize;
     const int each = splits * splits * splits;
     for (int z = 0; z < grid->frame.size[2]; ++z) {
         for (int y = 0; y < grid->frame.size[1]; ++y) {
             for (size_t word = 0; word < grid->wordsPerRow; ++word) {
-                uint64_t border = GetBorderWord(grid, word, y, z);
+                uint64_t border = GetBorderWord(grid, cells, word, y, z);
                 if (list->points == NULL) {
                     list->count += (size_t)(pvtCountBits(border) * each);
                     continue;
@@ -79,8 +90,7 @@ static void ListBorder(const pvtBitGrid* grid, int splits, PointList* list)
                         const double dx = (part % splits + 0.5) / splits;
                         const double dy = (row % splits + 0.5) / splits;
                         const double dz = (layer + 0.5) / splits;
-                        AddPoint(list, pvtAdd(grid->frame.origin,
-                                              (pvtVec3){(x + dx) * h, (y + dy) * h, (z + dz) * h}));
+                        AddPoint(list, (pvtVec3){x + dx, y + dy, z + dz});
                     }
                 }
             }
@@ -110,21 +120,23 @@ static pvtVec3 GetMiddle(uint64_t cells)
 
 // As many points along a voxel's side as it needs: one in the middle of each group of cells that
 // has any, or eight in each cell.
-static void AddCells(const pvtGridFrame* frame, const int voxel[3], uint64_t cells, int splits,
-                     PointList* list)
+static void AddCells(const int voxel[3], uint64_t cells, int splits, PointList* list)
 {
     const int side = splits == 1 ? 4 : splits == 2 ? 2 : 1;
     const int parts = splits > PVT_CELLS ? 8 : 1;
-    const double scale = frame->voxelSize / PVT_CELLS;
     const pvtVec3 corner = {PVT_CELLS * voxel[0], PVT_CELLS * voxel[1], PVT_CELLS * voxel[2]};
     for (int group = 0; group < 64 / (side * side * side); ++group) {
         const uint64_t members = cells & GetGroup(group, side);
+        if (list->points == NULL) {
+            list->count += members != 0 ? (size_t)parts : 0;
+            continue;
+        }
         for (int part = 0; part < parts && members != 0; ++part) {
             const pvtVec3 away = {parts == 1 ? 0.0 : 0.5 * (part & 1) - 0.25,
                                   parts == 1 ? 0.0 : 0.5 * (part >> 1 & 1) - 0.25,
                                   parts == 1 ? 0.0 : 0.5 * (part >> 2) - 0.25};
             const pvtVec3 at = pvtAdd(corner, pvtAdd(GetMiddle(members), away));
-            AddPoint(list, pvtAdd(frame->origin, pvtScale(at, scale)));
+            AddPoint(list, pvtScale(at, 1.0 / PVT_CELLS));
         }
     }
 }
@@ -139,7 +151,59 @@ static void ListCells(const pvtCellGrid* grid, int splits, PointList* list)
             const int voxel[3] = {first + __builtin_ctzll(bits), row % voxels->frame.size[1],
                                   row / voxels->frame.size[1]};
             const uint64_t border = grid->border != NULL ? grid->border[index] : 0;
-            AddCells(&voxels->frame, voxel, grid->cells[index] | border, splits, list);
+            AddCells(voxel, grid->cells[index] | border, splits, list);
+        }
+    }
+}
+
+// What a view makes of points in grid coordinates: pixel = dot(point, way) + offset.
+typedef struct Projection {
+    float right[3], up[3], offset[2];
+} Projection;
+
+static Projection MakeProjection(const pvtMaskFrame* frame, const pvtGridFrame* grid)
+{
+    Projection projection;
+    for (int axis = 0; axis < 3; ++axis) {
+        projection.right[axis] = (float)(pvtGetAxis(frame->right, axis) * grid->voxelSize);
+        projection.up[axis] = (float)(pvtGetAxis(frame->up, axis) * grid->voxelSize);
+    }
+    projection.offset[0] = (float)(pvtDot(grid->origin, frame->right) + frame->offsetX);
+    projection.offset[1] = (float)(pvtDot(grid->origin, frame->up) + frame->offsetY);
+    return projection;
+}
+
+enum { GROUP = 64 }; // points that are projected at once
+
+PVT_VECTOR_CLONES
+static void ProjectPoints(const Projection* projection, float* const points[3], size_t first,
+                          size_t count, float (*restrict places)[GROUP])
+{
+    const float* restrict x = points[0] + first;
+    const float* restrict y = points[1] + first;
+    const float* restrict z = points[2] + first;
+    for (size_t i = 0; i < count; ++i) {
+        places[0][i] = x[i] * projection->right[0] + y[i] * projection->right[1] +
+                       z[i] * projection->right[2] + projection->offset[0];
+        places[1][i] = x[i] * projection->up[0] + y[i] * projection->up[1] +
+                       z[i] * projection->up[2] + projection->offset[1];
+    }
+}
+
+static void SplatPoints(const CeilingTask* task, const pvtMaskFrame* frame, uint64_t* rows)
+{
+    const Projection projection = MakeProjection(frame, &task->frame);
+    const size_t words = (size_t)task->size / 64;
+    const float size = (float)task->size;
+    float places[2][GROUP];
+    for (size_t first = 0; first < task->pointCount; first += GROUP) {
+        const size_t left = task->pointCount - first, count = left < GROUP ? left : GROUP;
+        ProjectPoints(&projection, task->points, first, count, places);
+        for (size_t i = 0; i < count; ++i) {
+            const float x = places[0][i], y = places[1][i];
+            if (x >= 0.0F && y >= 0.0F && x < size && y < size) {
+                pvtSetBit(rows + (size_t)y * words, (size_t)x);
+            }
         }
     }
 }
@@ -148,19 +212,12 @@ static void MeasureViews(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const CeilingTask* task = taskData;
-    const size_t words = (size_t)task->size / 64;
     for (size_t v = begin; v < end && !pvtIsCancelled(task->context); ++v) {
         uint64_t rows[PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64];
         memset(rows, 0, sizeof rows);
         const pvtMaskFrame frame =
             pvtMakeMaskFrame(&task->views->views[v], task->bounds, task->size);
-        for (size_t i = 0; i < task->pointCount; ++i) {
-            const int x = (int)(pvtDot(task->points[i], frame.right) + frame.offsetX);
-            const int y = (int)(pvtDot(task->points[i], frame.up) + frame.offsetY);
-            if (x >= 0 && y >= 0 && x < task->size && y < task->size) {
-                pvtSetBit(rows + (size_t)y * words, (size_t)x);
-            }
-        }
+        SplatPoints(task, &frame, rows);
         const double sum = (double)pvtSumDistances(rows, task->size, task->table) / 256.0;
         task->results[v] = frame.weight * sum * frame.pixelSize * frame.pixelSize * frame.pixelSize;
     }
@@ -203,7 +260,7 @@ static pvtStatus MeasureFaces(pvtContext* context, const CeilingTask* task, cons
 static void ListPoints(const pvtBitGrid* grid, const pvtCellGrid* cells, int splits,
                        PointList* list)
 {
-    ListBorder(grid, splits, list);
+    ListBorder(grid, cells, splits, list);
     if (cells != NULL) {
         ListCells(cells, splits, list);
     }
@@ -225,17 +282,19 @@ pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* optio
     }
     PointList list = {0};
     ListPoints(grid, cells, splits, &list);
-    list.points = pvtAllocate(context, list.count, sizeof *list.points);
     uint32_t* table = pvtAllocate(context, pvtGetDistanceTableCount(task.size), sizeof *table);
     task.results = pvtAllocate(context, task.views->count, sizeof *task.results);
-    pvtStatus status = PVT_OK;
-    if (list.points == NULL || table == NULL || task.results == NULL) {
-        status = pvtContext_GetStatus(context);
-    } else {
-        list.count = 0;
+    bool hasRoom = table != NULL && task.results != NULL;
+    for (int axis = 0; axis < 3; ++axis) {
+        task.points[axis] = pvtAllocate(context, list.count, sizeof *task.points[axis]);
+        hasRoom = hasRoom && task.points[axis] != NULL;
+    }
+    pvtStatus status = hasRoom ? PVT_OK : pvtContext_GetStatus(context);
+    if (status == PVT_OK) {
+        list = (PointList){task.points, 0};
         ListPoints(grid, cells, splits, &list);
         pvtFillDistanceTable(task.size, 1, table);
-        task.points = list.points;
+        task.frame = grid->frame;
         task.pointCount = list.count;
         task.table = table;
         pvtParallelFor(context, MeasureViews, task.views->count, 1, &task);
@@ -246,6 +305,8 @@ pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* optio
     }
     pvtRelease(context, task.results);
     pvtRelease(context, table);
-    pvtRelease(context, list.points);
+    for (int axis = 0; axis < 3; ++axis) {
+        pvtRelease(context, task.points[axis]);
+    }
     return status;
 }

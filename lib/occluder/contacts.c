@@ -46,6 +46,7 @@ pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContac
 }
 
 typedef struct Probe {
+    const pvtInsideTest* inside;
     const pvtField* field;
     float corners[3][3];
     float side;                      // [vx] the longest
@@ -82,35 +83,38 @@ static int GetKind(const float shares[3])
     return shares[most] > 0.5F ? 9 + most : 12;
 }
 
-static float ProbePoint(Probe* probe, const float shares[3])
+static void ProbePoint(Probe* probe, float a, float b, float c)
 {
+    const float shares[3] = {a, b, c};
     float point[3];
     GetPoint((const float(*)[3])probe->corners, shares, point);
+    if (pvtField_GetLeastDepth(probe->field, point) >= probe->limit) {
+        return;
+    }
     const float depth = pvtField_GetDepth(probe->field, point);
     const int kind = GetKind(shares);
     if (depth < probe->depths[kind]) {
         probe->depths[kind] = depth;
         memcpy(probe->shares[kind], shares, sizeof probe->shares[kind]);
     }
-    return depth;
 }
 
 // One point of a smallest piece, and as many on the edges of the triangle that it has a part in.
 static void ProbeWithin(Probe* probe, const float at[2], float size)
 {
     const float u = at[0] + size * probe->at[0], v = at[1] + size * probe->at[1];
-    ProbePoint(probe, (float[3]){1.0F - u - v, u, v});
+    ProbePoint(probe, 1.0F - u - v, u, v);
     if (size < 0.0F) {
         return;
     }
     if (at[0] < 0.001F) {
-        ProbePoint(probe, (float[3]){1.0F - v, 0.0F, v});
+        ProbePoint(probe, 1.0F - v, 0.0F, v);
     }
     if (at[1] < 0.001F) {
-        ProbePoint(probe, (float[3]){1.0F - u, u, 0.0F});
+        ProbePoint(probe, 1.0F - u, u, 0.0F);
     }
     if (at[0] + at[1] + size > 0.999F) {
-        ProbePoint(probe, (float[3]){0.0F, u, 1.0F - u});
+        ProbePoint(probe, 0.0F, u, 1.0F - u);
     }
 }
 
@@ -121,8 +125,9 @@ static void ProbePiece(Probe* probe, const float at[2], float size, int splits)
     const float third = size / 3.0F;
     const float middle[3] = {1.0F - at[0] - at[1] - 2.0F * third, at[0] + third, at[1] + third};
     const float extent = fabsf(size) * probe->side;
-    const float depth = ProbePoint(probe, middle);
-    if (depth - FARTHEST * extent > probe->limit) {
+    float point[3];
+    GetPoint((const float(*)[3])probe->corners, middle, point);
+    if (pvtInsideTest_HasBall(probe->inside, point, FARTHEST * extent + probe->limit)) {
         return;
     }
     if (splits == 0 || extent < probe->piece || fabsf(size) < PART) {
@@ -145,9 +150,10 @@ typedef struct ContactTask {
 
 static void StartProbe(const ContactTask* task, int triangle, Probe* probe)
 {
-    *probe = (Probe){.field = task->field,
-                     .piece = task->options->piece,
-                     .limit = task->options->margins[triangle] + task->options->band};
+    probe->inside = task->options->inside;
+    probe->field = task->field;
+    probe->piece = task->options->piece;
+    probe->limit = task->options->margins[triangle] + task->options->band;
     pvtRandom random = pvtMakeRandom(task->contacts->round, STREAM);
     const float u = (float)pvtRandom_Unit(&random), v = (float)pvtRandom_Unit(&random);
     probe->at[0] = u + v < 1.0F ? u : 1.0F - u;
@@ -176,12 +182,11 @@ static void ProbeTriangle(const ContactTask* task, int triangle, Probe* probe)
     const pvtContactSet* set = task->contacts;
     const float(*known)[3] = (const float(*)[3])set->known + (size_t)triangle * PVT_MOST_CONTACTS;
     for (int k = 0; k < 3; ++k) {
-        ProbePoint(probe,
-                   (float[3]){k == 0 ? 1.0F : 0.0F, k == 1 ? 1.0F : 0.0F, k == 2 ? 1.0F : 0.0F});
+        ProbePoint(probe, k == 0 ? 1.0F : 0.0F, k == 1 ? 1.0F : 0.0F, k == 2 ? 1.0F : 0.0F);
     }
     for (int kind = 3; kind < PVT_MOST_CONTACTS && !task->options->isAnew; ++kind) {
         if ((set->kinds[triangle] >> kind & 1) != 0) {
-            ProbePoint(probe, known[kind]);
+            ProbePoint(probe, known[kind][0], known[kind][1], known[kind][2]);
         }
     }
     ProbePiece(probe, (float[2]){0.0F, 0.0F}, 1.0F, MOST_SPLITS);

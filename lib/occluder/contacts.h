@@ -4,6 +4,7 @@
 #define PVT_OCCLUDER_CONTACTS_H
 
 #include "field.h"
+#include "inside.h"
 #include "triangle_set.h"
 
 /// Of a triangle: its corners, and the point farthest outwards of each half of an edge and of each
@@ -28,10 +29,11 @@ typedef struct pvtContactSet {
 } pvtContactSet;
 
 typedef struct pvtContactOptions {
-    const float* margins; ///< [vx] of each triangle: the depth that it is to keep
-    float band;           ///< [vx] how near to that a contact begins
-    float piece;          ///< [vx] along a side: a triangle is probed once in pieces of this size
-    bool isAnew;          ///< the triangles are others than the last time
+    const pvtInsideTest* inside; ///< what the field is of
+    const float* margins;        ///< [vx] of each triangle: the depth that it is to keep
+    float band;                  ///< [vx] how near to that a contact begins
+    float piece; ///< [vx] along a side: a triangle is probed once in pieces of this size
+    bool isAnew; ///< the triangles are others than the last time
 } pvtContactOptions;
 
 pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContactSet* contacts);

@@ -298,6 +298,7 @@ pvtStatus pvtCreateField(pvtContext* context, const pvtBitGrid* allowed, const p
     while (longest > resolution * field->nodeSize && field->nodeSize < 64) {
         field->nodeSize *= 2;
     }
+    field->scale = 1.0F / (float)field->nodeSize;
     for (int axis = 0; axis < 3; ++axis) {
         field->size[axis] = (size[axis] + field->nodeSize - 1) / field->nodeSize;
     }

@@ -11,6 +11,7 @@
 typedef struct pvtField {
     int size[3];  ///< nodes along each axis
     int nodeSize; ///< [vx] along a node's side, 1, 2, 4, ...
+    float scale;  ///< 1 ÷ nodeSize
     int8_t* depths;
     uint32_t* places[3]; ///< of a node in `depths`: the sum of one for each of its coordinates
 } pvtField;
@@ -42,10 +43,9 @@ static inline pvtFieldPlace pvtField_FindPlace(const pvtField* field, const floa
 {
     pvtFieldPlace place;
     const uint32_t* at[3];
-    const float scale = 1.0F / (float)field->nodeSize;
     for (int axis = 0; axis < 3; ++axis) {
         const float most = (float)field->size[axis] - 1.001F;
-        float value = point[axis] * scale - 0.5F;
+        float value = point[axis] * field->scale - 0.5F;
         value = value > 0.0F ? value : 0.0F;
         value = value < most ? value : most;
         const int whole = (int)value;
@@ -81,6 +81,24 @@ static inline float pvtField_GetDepth(const pvtField* field, const float point[3
     pvtMixAlongX(&place, x);
     const float front = pvtMix(x[0], x[1], place.part[1]), back = pvtMix(x[2], x[3], place.part[1]);
     return pvtMix(front, back, place.part[2]) * (float)field->nodeSize / PVT_FIELD_STEPS;
+}
+
+/// At least as much below pvtField_GetDepth as linear interpolation could be below the node that
+/// the point lies in: a look at one node instead of eight.
+static inline float pvtField_GetLeastDepth(const pvtField* field, const float point[3])
+{
+    uint32_t at = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float most = (float)(field->size[axis] - 1);
+        float value = point[axis] * field->scale;
+        value = value > 0.0F ? value : 0.0F;
+        value = value < most ? value : most;
+        at += field->places[axis][(int)value];
+    }
+    // Half a node along each axis: of the corners of that cube three each are one and √2 nodes
+    // away, and one is √3.
+    const float lower = 1.125F * PVT_FIELD_STEPS;
+    return ((float)field->depths[at] - lower) * (float)field->nodeSize / PVT_FIELD_STEPS;
 }
 
 #endif

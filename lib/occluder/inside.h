@@ -33,4 +33,23 @@ bool pvtInsideTest_HasTriangle(const pvtInsideTest* test, const pvtVec3 corners[
 bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
                                pvtVec3* outside);
 
+/// One look at the blocks: whether a ball lies where voxels are allowed as wholes. False may be
+/// wrong, by up to two blocks.
+static inline bool pvtInsideTest_HasBall(const pvtInsideTest* test, const float center[3],
+                                         float radius)
+{
+    const float scale = 1.0F / (float)test->blockSize;
+    int block[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const float at = center[axis] * scale;
+        if (!(at >= 0.0F) || at >= (float)test->blocks[axis]) {
+            return false;
+        }
+        block[axis] = (int)at;
+    }
+    const size_t row = (size_t)block[2] * (size_t)test->blocks[1] + (size_t)block[1];
+    const int reach = test->reach[row * (size_t)test->blocks[0] + (size_t)block[0]];
+    return radius <= (float)((reach - 1) * test->blockSize);
+}
+
 #endif

@@ -20,6 +20,9 @@
 enum {
     SIZE = PVT_SIGHT_SIZE,
     ENDS = SIZE + 1,
+    MASKED = SIZE + 2,
+    ROWS = 8,
+    LANES = 8,
     STRIDE = 72, // of the tables
     TABLE = SIZE * SIZE + 1,
     LAYERS = 3,
@@ -255,13 +258,42 @@ static void SumColumns(float (*restrict values)[STRIDE])
     }
 }
 
-// What each pixel that is missing is worth; other rows may hold anything.
+// Several rows at a time, as each sum waits for the one before it.
+static void SumRows(float (*restrict values)[STRIDE])
+{
+    for (int y = 0; y < SIZE; y += ROWS) {
+        float sums[ROWS] = {0};
+        for (int x = 0; x < SIZE; ++x) {
+            for (int i = 0; i < ROWS; ++i) {
+                sums[i] += values[y + i][x];
+                values[y + i][x] = sums[i];
+            }
+        }
+    }
+}
+
+// Into a table with a margin all around, 0 where nothing is missing.
+PVT_VECTOR_CLONES
+static void MaskValues(const uint64_t* missing, float (*restrict values)[STRIDE],
+                       float (*restrict masked)[STRIDE])
+{
+    for (int y = 0; y < SIZE; ++y) {
+        const uint32_t low = (uint32_t)missing[y], high = (uint32_t)(missing[y] >> 32);
+        for (int x = 0; x < 32; ++x) {
+            masked[y + 1][x + 1] = (low >> x & 1) != 0 ? values[y][x] : 0.0F;
+            masked[y + 1][x + 33] = (high >> x & 1) != 0 ? values[y][x + 32] : 0.0F;
+        }
+    }
+}
+
+// What each pixel that is missing is worth, at one row and column farther.
 static double WeighPixels(const pvtPuller* puller, const pvtSight* sight, const uint64_t* missing,
-                          float (*values)[STRIDE])
+                          float (*masked)[STRIDE])
 {
     uint16_t sums[ENDS][STRIDE];
+    float values[ENDS][STRIDE];
     SumPixels(missing, sums);
-    memset(values, 0, ENDS * sizeof *values);
+    memset(values, 0, sizeof values);
     double worth = 0.0;
     const pvtSightQuad* quads = puller->sights->quads + sight->firstQuad;
     for (size_t q = 0; q < sight->quadCount; ++q) {
@@ -275,13 +307,8 @@ static double WeighPixels(const pvtPuller* puller, const pvtSight* sight, const 
         values[quad->y1][quad->x1] += slope;
     }
     SumColumns(values);
-    for (int y = 0; y < SIZE; ++y) {
-        float sum = 0.0F;
-        for (int x = 0; x < SIZE && missing[y] != 0; ++x) {
-            sum += values[y][x];
-            values[y][x] = sum;
-        }
-    }
+    SumRows(values);
+    MaskValues(missing, values, masked);
     return worth;
 }
 
@@ -291,8 +318,39 @@ typedef struct EdgeWorth {
     float normal[2];
 } EdgeWorth;
 
+// The worths at `steps` even steps along a line, weighed by how near they are to its ends and to
+// its middle. In lanes of their own, so that the sums do not depend on the width of vectors.
+PVT_VECTOR_CLONES
+static void SumAlong(const float from[2], const float way[2], int steps,
+                     const float* restrict masked, float sums[3])
+{
+    float ends[2][LANES] = {{0}}, middle[LANES] = {0};
+    const float step = 1.0F / (float)steps;
+    for (int first = 0; first < steps; first += LANES) {
+        for (int i = 0; i < LANES; ++i) {
+            const float s = ((float)(first + i) + 0.5F) * step;
+            float x = from[0] + way[0] * s + 1.0F, y = from[1] + way[1] * s + 1.0F;
+            x = x > 0.0F ? x : 0.0F;
+            x = x < SIZE + 1 ? x : SIZE + 1;
+            y = y > 0.0F ? y : 0.0F;
+            y = y < SIZE + 1 ? y : SIZE + 1;
+            const float found = masked[(int)y * STRIDE + (int)x];
+            const float value = s < 1.0F ? found : 0.0F;
+            const float half = s < 0.5F ? s : 1.0F - s;
+            ends[0][i] += value * (1.0F - s);
+            ends[1][i] += value * s;
+            middle[i] += value * (2.0F * half);
+        }
+    }
+    for (int i = 0; i < LANES; ++i) {
+        sums[0] += ends[0][i];
+        sums[1] += ends[1][i];
+        sums[2] += middle[i];
+    }
+}
+
 static bool WeighEdge(const float a[2], const float b[2], const float across[2], float inset,
-                      const uint64_t* missing, float (*values)[STRIDE], EdgeWorth* worth)
+                      float (*masked)[STRIDE], EdgeWorth* worth)
 {
     const float dx = b[0] - a[0], dy = b[1] - a[1];
     const float length = sqrtf(dx * dx + dy * dy);
@@ -304,33 +362,20 @@ static bool WeighEdge(const float a[2], const float b[2], const float across[2],
     worth->normal[0] = sign * dy / length;
     worth->normal[1] = -sign * dx / length;
     const int steps = (int)length + 1;
-    const float step = 1.0F / (float)steps;
-    const float x0 = a[0] + worth->normal[0] * (BEHIND - inset);
-    const float y0 = a[1] + worth->normal[1] * (BEHIND - inset);
-    for (int i = 0; i < steps; ++i) {
-        const float s = ((float)i + 0.5F) * step;
-        const float x = x0 + dx * s, y = y0 + dy * s;
-        if (!(x >= 0.0F && y >= 0.0F && x < SIZE && y < SIZE)) {
-            continue;
-        }
-        const int column = (int)x, row = (int)y;
-        if ((missing[row] >> column & 1) != 0) {
-            const float value = values[row][column];
-            worth->ends[0] += value * (1.0F - s);
-            worth->ends[1] += value * s;
-            worth->middle += value * (s < 0.5F ? 2.0F * s : 2.0F - 2.0F * s);
-        }
-    }
-    const float pixels = length * step;
-    worth->ends[0] *= pixels;
-    worth->ends[1] *= pixels;
-    worth->middle *= pixels;
+    const float from[2] = {a[0] + worth->normal[0] * (BEHIND - inset),
+                           a[1] + worth->normal[1] * (BEHIND - inset)};
+    float sums[3] = {0};
+    SumAlong(from, (float[2]){dx, dy}, steps, masked[0], sums);
+    const float pixels = length / (float)steps;
+    worth->ends[0] = sums[0] * pixels;
+    worth->ends[1] = sums[1] * pixels;
+    worth->middle = sums[2] * pixels;
     return worth->ends[0] + worth->ends[1] > 0.0F;
 }
 
 // Edges between two triangles that lie on both sides of it cover what is behind each other.
 static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2],
-                      const uint64_t* missing, float (*values)[STRIDE])
+                      float (*masked)[STRIDE])
 {
     const pvtTriangleSet* set = puller->set;
     float(*corners)[2] = puller->cornerPulls + b * (size_t)set->cornerCapacity;
@@ -348,8 +393,7 @@ static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2],
             continue;
         }
         EdgeWorth worth;
-        if (!WeighEdge(from, to, across, isOpen ? puller->options.inset : 0.0F, missing, values,
-                       &worth)) {
+        if (!WeighEdge(from, to, across, isOpen ? puller->options.inset : 0.0F, masked, &worth)) {
             continue;
         }
         for (int axis = 0; axis < 2; ++axis) {
@@ -375,7 +419,7 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
     pvtPuller* puller = taskData;
     const pvtTriangleSet* set = puller->set;
     float places[MOST_CORNERS_AT_ONCE][2];
-    float values[ENDS][STRIDE];
+    float masked[MASKED][STRIDE] = {{0}};
     for (size_t b = begin; b < end; ++b) {
         const pvtSight* sight = &puller->sights->sights[GetSightIndex(puller, b)];
         ProjectCorners(sight, set, places);
@@ -385,9 +429,13 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
         }
         uint64_t missing[SIZE];
         FindMissing(sight, rows, missing);
-        puller->worth[b] = WeighPixels(puller, sight, missing, values);
         puller->most[b] = (double)sight->quadCount;
-        PullEdges(puller, b, places, missing, values);
+        if (puller->options.wantsNoPulls) {
+            puller->worth[b] = SumWorths(puller, sight, missing);
+        } else {
+            puller->worth[b] = WeighPixels(puller, sight, missing, masked);
+            PullEdges(puller, b, places, masked);
+        }
     }
 }
 
@@ -414,8 +462,10 @@ void pvtPullCorners(pvtContext* context, const pvtPullOptions* options, pvtPulle
     assert(set->cornerCount <= MOST_CORNERS_AT_ONCE);
     SetOptions(puller, options);
     pvtParallelFor(context, PullSights, (size_t)options->count, 1, puller);
-    SumPulls(puller, (const float(*)[2])puller->cornerPulls, (size_t)set->cornerCapacity,
-             set->cornerCount, puller->corners);
+    if (!options->wantsNoPulls) {
+        SumPulls(puller, (const float(*)[2])puller->cornerPulls, (size_t)set->cornerCapacity,
+                 set->cornerCount, puller->corners);
+    }
     if (options->wantsEdges) {
         SumPulls(puller, (const float(*)[2])puller->edgePulls, 3 * (size_t)set->triangleCapacity,
                  set->edgeCount, puller->edges);

@@ -16,6 +16,7 @@ typedef struct pvtPullOptions {
     float softness; ///< [px]
     float inset; ///< [px] that open edges are drawn short of, so that no gap is too narrow to see
     bool wantsEdges;
+    bool wantsNoPulls; ///< `share` alone
 } pvtPullOptions;
 
 typedef struct pvtPuller {
@@ -46,7 +47,7 @@ pvtStatus pvtCreatePuller(pvtContext* context, const pvtSightSet* sights, const 
                           pvtPuller* puller);
 void pvtPuller_Free(pvtContext* context, pvtPuller* puller);
 
-/// Fills `corners`, `share` and, if wanted, `edges`.
+/// Fills `share`, `corners` unless they are not wanted, and, if wanted, `edges`.
 void pvtPullCorners(pvtContext* context, const pvtPullOptions* options, pvtPuller* puller);
 /// Fills `triangles`, for at least a quarter of them, those that cover the fewest pixels alone; it
 /// is HUGE_VAL for the others.

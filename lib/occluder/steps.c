@@ -15,9 +15,6 @@ enum {
     MIN_RESOLUTION = 8,
     MAX_RESOLUTION = 2048,
     SELECT_VIEWS = 36,
-    FAST_SELECT_VIEWS = 16,
-    FAST_DIRECTIONS = 16, // a third of the candidates: in a short search the others hardly count
-    FAST_DEPTHS = 16,
     MAX_REFINED = 512, // triangles: beyond, panels are so many that single moves hardly count
 };
 
@@ -290,10 +287,23 @@ static bool IsPaper(const pvtBuild* build)
     return build->options->method == PVT_METHOD_PAPER;
 }
 
-// What ascends needs no more than a start, and leaves it far behind.
-static bool IsStartEnough(const pvtBuild* build)
+// How many candidates there are, and over how many views they are chosen.
+typedef struct SearchSize {
+    int directions, depths, views;
+} SearchSize;
+
+static SearchSize GetSearchSize(const pvtBuild* build)
 {
-    return pvtMayAscend(build) || build->options->effort == PVT_EFFORT_FAST;
+    const bool isFast = build->options->effort == PVT_EFFORT_FAST;
+    const pvtPlanOptions whole = pvtDefaultPlanOptions();
+    // What ascends needs no more than a start, and leaves it far behind.
+    if (isFast && pvtMayAscend(build)) {
+        return (SearchSize){8, 12, 8};
+    }
+    // A third of the candidates: in a short search the others hardly count.
+    return isFast || pvtMayAscend(build)
+               ? (SearchSize){16, 16, 16}
+               : (SearchSize){whole.directions, whole.depths, SELECT_VIEWS};
 }
 
 // What is sliced: the paper slices the solid, and lets simplification stray by the tolerance; the
@@ -325,9 +335,9 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
         pvtPlanOptions options = pvtDefaultPlanOptions();
         options.faces = IsPaper(build) ? NULL : &faces;
         options.axes = !IsPaper(build);
-        if (!IsPaper(build) && IsStartEnough(build)) {
-            options.directions = FAST_DIRECTIONS;
-            options.depths = FAST_DEPTHS;
+        if (!IsPaper(build)) {
+            options.directions = GetSearchSize(build).directions;
+            options.depths = GetSearchSize(build).depths;
         }
         status = pvtPlanSections(context, &options, volume->grid, &plan);
     }
@@ -371,7 +381,7 @@ static pvtStatus Choose(pvtContext* context, pvtBuild* build, const pvtViewOptio
                         pvtCut* cut)
 {
     pvtViewOptions few = *views;
-    const int most = IsStartEnough(build) ? FAST_SELECT_VIEWS : SELECT_VIEWS;
+    const int most = GetSearchSize(build).views;
     few.count = few.count < most ? few.count : most;
     pvtViewSet set;
     pvtStatus status = pvtMakeViews(context, &few, &set);

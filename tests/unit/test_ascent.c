@@ -231,6 +231,68 @@ static void what_another_covers_as_well_is_worth_nothing_alone(void** state)
     DestroyTestContext(context);
 }
 
+// All over the triangles, not only where contacts were.
+static void CheckDepths(const Lesson* lesson, float least)
+{
+    pvtRandom random = pvtMakeRandom(31, 5);
+    for (int i = 0; i < 20000; ++i) {
+        const uint32_t* corners = lesson->set.triangles[i % lesson->set.triangleCount];
+        const float u = RollFloat(&random, 0.0F, 1.0F), v = RollFloat(&random, 0.0F, 1.0F - u);
+        float point[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            point[axis] = (1.0F - u - v) * lesson->set.corners[corners[0]][axis] +
+                          u * lesson->set.corners[corners[1]][axis] +
+                          v * lesson->set.corners[corners[2]][axis];
+        }
+        assert_true(pvtField_GetDepth(&lesson->field, point) > least);
+    }
+}
+
+static void one_look_tells_less_than_all(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 1, RADIUS, &lesson);
+    const pvtInterior interior = {.allowed = &lesson.grid};
+    pvtInsideTest inside;
+    CHECK_OK(context, pvtCreateInsideTest(context, &interior, &inside));
+    pvtRandom random = pvtMakeRandom(13, 8);
+    int balls = 0;
+    for (int i = 0; i < 5000; ++i) {
+        float point[3];
+        RollCorner(&random, CENTER, point);
+        const float depth = pvtField_GetDepth(&lesson.field, point);
+        const float least = pvtField_GetLeastDepth(&lesson.field, point);
+        assert_true(least <= depth && least > depth - 2.5F);
+        const float radius = RollFloat(&random, 0.0F, 12.0F);
+        if (pvtInsideTest_HasBall(&inside, point, radius)) {
+            assert_true(GetDistance(point) + radius < RADIUS + 1.0F);
+            ++balls;
+        }
+    }
+    assert_true(balls > 50);
+    pvtInsideTest_Free(context, &inside);
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
+static void a_share_is_the_same_with_pulls_and_without(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 8, 12.0F, &lesson);
+    pvtPullOptions options = {.count = 64, .softness = 2.0F};
+    pvtPullCorners(context, &options, &lesson.puller);
+    const double share = lesson.puller.share;
+    options.wantsNoPulls = true;
+    pvtPullCorners(context, &options, &lesson.puller);
+    assert_true(share > 0.0 && share == lesson.puller.share);
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
 static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
 {
     (void)state;
@@ -239,8 +301,12 @@ static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
     MakeLesson(context, 12, RADIUS, &lesson);
     pvtContactSet contacts;
     CHECK_OK(context, pvtCreateContacts(context, 12, &contacts));
+    const pvtInterior interior = {.allowed = &lesson.grid};
+    pvtInsideTest inside;
+    CHECK_OK(context, pvtCreateInsideTest(context, &interior, &inside));
     const float margins[12] = {0};
-    const pvtContactOptions options = {.margins = margins, .band = 0.5F};
+    const pvtContactOptions options = {
+        .inside = &inside, .margins = margins, .band = 0.5F, .piece = 8.0F};
     for (int round = 0; round < 40; ++round) {
         pvtFindContacts(context, &options, &lesson.field, &lesson.set, &contacts);
         pvtPushInside(&contacts, &lesson.field, margins, 3, &lesson.set);
@@ -248,6 +314,7 @@ static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
     for (int c = 0; c < lesson.set.cornerCount; ++c) {
         assert_true(GetDistance(lesson.set.corners[c]) < RADIUS + 0.9F);
     }
+    CheckDepths(&lesson, -0.2F);
     pvtFindContacts(context, &options, &lesson.field, &lesson.set, &contacts);
     assert_true(contacts.count > 0);
     float velocities[36][3];
@@ -270,6 +337,7 @@ static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
         assert_true(contact->depth >= 0.5F || speed > -0.05F);
     }
     pvtContactSet_Free(context, &contacts);
+    pvtInsideTest_Free(context, &inside);
     FreeLesson(context, &lesson);
     DestroyTestContext(context);
 }
@@ -486,6 +554,8 @@ int main(void)
         cmocka_unit_test(sights_see_a_disc_and_draw_their_rectangles_within_it),
         cmocka_unit_test(following_the_pull_hides_more),
         cmocka_unit_test(what_another_covers_as_well_is_worth_nothing_alone),
+        cmocka_unit_test(one_look_tells_less_than_all),
+        cmocka_unit_test(a_share_is_the_same_with_pulls_and_without),
         cmocka_unit_test(contacts_bring_triangles_inside_and_keep_them_there),
         cmocka_unit_test(triangles_cross_where_they_pass_through_each_other),
         cmocka_unit_test(triangles_may_come_up_to_the_surface_and_no_farther),

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+// How the ascent goes: steps, and what they become less of. Softness, the steps' length and the
+// number of triangles fall together, from a few pixels that matter everywhere to the last ones at
+// the silhouette. What such a climb ends at depends on where it began. So after it come cycles, as
+// in iterated local search (Lourenço et al., 2003): the best so far is softened again, triangles
+// are added where most is left to hide, and the least useful ones are taken away on the way down.
+#include "ascent_state.h"
+
+#include "base/context.h"
+#include "voxel/bit_grid.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    SWEEPS = 3,
+    CONTACT_STEPS = 8,
+    LATE_CONTACT_STEPS = 4,
+    PRUNE_ROUNDS = 40, // in which a surplus is taken away
+};
+
+// A fall of softness and reach by factors e^−x.
+typedef struct Leg {
+    double share;                 // of the iterations of a climb
+    float softness, softnessFall; // [px]
+    float reach, reachFall;       // [vx] at 256 along the longest side
+    double pruneBegin, pruneEnd;  // shares of the leg between which the surplus is taken away
+} Leg;
+
+static const Leg climb[] = {{0.55, 30.0F, 2.3F, 3.0F, 1.8F, 0.0, 1.0},
+                            {0.45, 3.0F, 2.0F, 0.5F, 1.6F, 0.0, 0.0}};
+static const Leg cycle = {0.75, 15.0F, 3.6F, 2.0F, 3.0F, 0.3, 0.7};
+
+static const double GROWTH = 0.35;        // triangles added in a cycle, as part of the budget
+static const float JUDGE_SOFTNESS = 0.4F; // [px]
+static const float LATE_SOFTNESS = 3.0F;  // [px] below which contacts are looked for more closely
+static const float COARSE_PIECE = 16.0F, FINE_PIECE = 8.0F; // [vx]
+static const float MOMENTUM = 0.9F, SQUARES = 0.98F;
+static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F; // [vx]
+static const float THIN_PART = 0.1F;
+static const float AHEAD = 2.0F;       // of a step
+static const float LEAST_PULL = 0.02F; // of the strongest: corners that are pulled less move less
+
+// Where the inside is thin, steps are short: a fraction of how deep it is a little farther in.
+static float LimitReach(const pvtAscent* ascent, const float corner[3])
+{
+    float inward[3], deeper[3];
+    pvtField_GetDepthAndInward(&ascent->field, corner, inward);
+    for (int axis = 0; axis < 3; ++axis) {
+        deeper[axis] = corner[axis] + THIN_LOOK * inward[axis];
+    }
+    const float depth = pvtField_GetDepth(&ascent->field, deeper);
+    const float most = THIN_LEAST + THIN_PART * (depth > 0.0F ? depth : 0.0F);
+    return ascent->reach < most ? ascent->reach : most;
+}
+
+// The mean pull over the root of its mean square: about 1 for a corner that is always pulled the
+// same way, and next to nothing for one that is pulled to and fro.
+static void MoveCorners(pvtAscent* ascent)
+{
+    pvtTriangleSet* set = &ascent->set;
+    float most = 0.0F;
+    for (int c = 0; c < set->cornerCount; ++c) {
+        float* speed = ascent->speeds[c];
+        float square = 0.0F;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float pull = ascent->puller.corners[c][axis];
+            speed[axis] = MOMENTUM * speed[axis] + (1.0F - MOMENTUM) * pull;
+            square += pull * pull;
+        }
+        ascent->squares[c] = SQUARES * ascent->squares[c] + (1.0F - SQUARES) * square;
+        most = ascent->squares[c] > most ? ascent->squares[c] : most;
+    }
+    for (int c = 0; c < set->cornerCount && most > 0.0F; ++c) {
+        const float scale = LimitReach(ascent, set->corners[c]) /
+                            (sqrtf(ascent->squares[c]) + LEAST_PULL * sqrtf(most));
+        for (int axis = 0; axis < 3 && !set->isFixed[c]; ++axis) {
+            set->corners[c][axis] += scale * ascent->speeds[c][axis];
+        }
+    }
+}
+
+void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
+{
+    const pvtPullOptions pull = {.first = ascent->next,
+                                 .count = ascent->options->batch,
+                                 .softness = ascent->softness,
+                                 .inset = PVT_ASCENT_INSET,
+                                 .wantsEdges = wantsEdges};
+    pvtPullCorners(context, &pull, &ascent->puller);
+    ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
+    // Contacts change slowly: they are looked for now and then, a little farther away.
+    const bool isLate = ascent->softness < LATE_SOFTNESS;
+    pvtContactOptions contact = {.inside = ascent->options->inside,
+                                 .margins = ascent->margins,
+                                 .band = AHEAD * ascent->reach,
+                                 .piece = isLate ? FINE_PIECE : COARSE_PIECE,
+                                 .isAnew = ascent->contactAge == 0};
+    if (ascent->contactAge++ % (isLate ? LATE_CONTACT_STEPS : CONTACT_STEPS) == 0) {
+        pvtFindContacts(context, &contact, &ascent->field, &ascent->set, &ascent->contacts);
+    } else {
+        pvtUpdateContacts(&ascent->field, &ascent->set, &ascent->contacts);
+    }
+    contact.band = ascent->reach;
+    for (int c = 0; c < ascent->set.cornerCount; ++c) {
+        if (ascent->set.isFixed[c]) {
+            memset(ascent->puller.corners[c], 0, sizeof ascent->puller.corners[c]);
+        }
+    }
+    pvtSlideAlong(&contact, &ascent->contacts, &ascent->set, SWEEPS, ascent->puller.corners);
+    MoveCorners(ascent);
+    pvtPushInside(&ascent->contacts, &ascent->field, ascent->margins, SWEEPS, &ascent->set);
+}
+
+// What the triangles hide, as a share of all that can be: over all sights.
+static double Judge(pvtContext* context, pvtAscent* ascent)
+{
+    double sum = 0.0;
+    const size_t count = ascent->sights.count;
+    for (size_t first = 0; first < count; first += PVT_MOST_BATCH) {
+        const size_t left = count - first;
+        const pvtPullOptions pull = {.first = first,
+                                     .count = (int)(left < PVT_MOST_BATCH ? left : PVT_MOST_BATCH),
+                                     .softness = JUDGE_SOFTNESS,
+                                     .inset = PVT_ASCENT_INSET,
+                                     .wantsNoPulls = true};
+        pvtPullCorners(context, &pull, &ascent->puller);
+        sum += ascent->puller.share * pull.count;
+    }
+    return sum / (double)count;
+}
+
+static void TakeRest(pvtAscent* ascent)
+{
+    const size_t corners = (size_t)ascent->set.cornerCapacity;
+    memset(ascent->speeds, 0, corners * sizeof *ascent->speeds);
+    memset(ascent->squares, 0, corners * sizeof *ascent->squares);
+    ascent->contactAge = 0;
+}
+
+static void BeginLeg(pvtAscent* ascent, const Leg* leg)
+{
+    ascent->softness = leg->softness;
+    ascent->reach = leg->reach * (float)pvtGetLongestSide(ascent->frame.size) / 256.0F;
+}
+
+static int GetSteps(const pvtAscent* ascent, const Leg* leg)
+{
+    const int steps = (int)(leg->share * ascent->options->iterations);
+    return steps > 1 ? steps : 1;
+}
+
+// False when time is up.
+static bool GoOn(pvtContext* context, const pvtAscent* ascent)
+{
+    const pvtAscentOptions* options = ascent->options;
+    const double all =
+        options->tries * (GetSteps(ascent, &climb[0]) + GetSteps(ascent, &climb[1])) +
+        options->cycles * GetSteps(ascent, &cycle);
+    const double share = ascent->steps / all;
+    pvtReportProgress(context, share < 1.0 ? share : 1.0);
+    if (options->deadline > 0.0 && pvtGetSeconds() > options->deadline) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the deadline ended the refinement after %.0f %% of its steps", 100.0 * share);
+        return false;
+    }
+    return !pvtIsCancelled(context);
+}
+
+// How many triangles there are to be at a time of a leg, 0 to 1.
+static int GetCount(const pvtAscent* ascent, const Leg* leg, int start, double time)
+{
+    const int budget = ascent->options->budget;
+    const double part = (leg->pruneEnd - time) / (leg->pruneEnd - leg->pruneBegin);
+    const double left = !(part > 0.0) ? 0.0 : part < 1.0 ? part : 1.0;
+    return start <= budget ? start : budget + (int)((start - budget) * left * left);
+}
+
+static bool RunLeg(pvtContext* context, pvtAscent* ascent, const Leg* leg)
+{
+    const int steps = GetSteps(ascent, leg);
+    const int round = steps / PRUNE_ROUNDS > 1 ? steps / PRUNE_ROUNDS : 1;
+    const int start = ascent->set.triangleCount;
+    for (int i = 0; i < steps; ++i, ++ascent->steps) {
+        if (i % round == 0) {
+            pvtAscent_Prune(context, ascent, GetCount(ascent, leg, start, (double)i / steps));
+        }
+        pvtAscent_Step(context, ascent, false);
+        ascent->softness *= 1.0F - leg->softnessFall / (float)steps;
+        ascent->reach *= 1.0F - leg->reachFall / (float)steps;
+        if (!GoOn(context, ascent)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void KeepIfBetter(pvtContext* context, pvtAscent* ascent)
+{
+    pvtAscent_Prune(context, ascent, ascent->options->budget);
+    const double worth = Judge(context, ascent);
+    if (worth > ascent->bestWorth) {
+        ascent->bestWorth = worth;
+        pvtTriangleSet_Copy(&ascent->set, &ascent->best);
+    }
+}
+
+// From the start again, and from other sights on: that is enough to end elsewhere.
+static bool RunClimb(pvtContext* context, pvtAscent* ascent, int attempt)
+{
+    bool goesOn = true;
+    ascent->next = ascent->sights.count * (size_t)attempt / (size_t)ascent->options->tries;
+    pvtTriangleSet_Copy(&ascent->start, &ascent->set);
+    TakeRest(ascent);
+    for (size_t i = 0; i < sizeof climb / sizeof *climb && goesOn; ++i) {
+        BeginLeg(ascent, &climb[i]);
+        goesOn = RunLeg(context, ascent, &climb[i]);
+    }
+    KeepIfBetter(context, ascent);
+    return goesOn;
+}
+
+static bool RunCycle(pvtContext* context, pvtAscent* ascent)
+{
+    const int growth = (int)(GROWTH * ascent->options->budget);
+    pvtTriangleSet_Copy(&ascent->best, &ascent->set);
+    TakeRest(ascent);
+    BeginLeg(ascent, &cycle);
+    pvtAscent_Step(context, ascent, true);
+    pvtAscent_Grow(ascent, growth > 1 ? growth : 1);
+    const bool goesOn = RunLeg(context, ascent, &cycle);
+    KeepIfBetter(context, ascent);
+    return goesOn;
+}
+
+pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
+{
+    bool goesOn = true;
+    ascent->bestWorth = -1.0;
+    for (int attempt = 0; attempt < ascent->options->tries && goesOn; ++attempt) {
+        goesOn = RunClimb(context, ascent, attempt);
+    }
+    for (int i = 0; i < ascent->options->cycles && goesOn; ++i) {
+        goesOn = RunCycle(context, ascent);
+    }
+    pvtTriangleSet_Copy(&ascent->best, &ascent->set);
+    return pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
+}
