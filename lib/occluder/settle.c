@@ -189,6 +189,16 @@ static bool AreTrianglesAroundInside(const pvtAscent* ascent, uint32_t corner)
     return true;
 }
 
+// Corners on the way to where a step would take them, a group at a time.
+typedef struct Polishing {
+    pvtAscent* ascent;
+    float (*steps)[3];
+    bool* isLeft;    // of each corner: it has yet to be moved
+    bool* isTaken;   // of each triangle: a corner of the group is one of its
+    uint32_t* group; // no two corners of a triangle
+    size_t groupSize;
+} Polishing;
+
 // Halved until it fits; the corner stays where it is when it never does.
 static void MoveCorner(pvtAscent* ascent, uint32_t corner, const float step[3])
 {
@@ -207,35 +217,92 @@ static void MoveCorner(pvtAscent* ascent, uint32_t corner, const float step[3])
     memcpy(place, before, sizeof before);
 }
 
-// A step of the ascent that never leaves the inside.
-static pvtStatus PolishOnce(pvtContext* context, pvtAscent* ascent)
+static void MoveCorners(size_t begin, size_t end, int worker, void* taskData)
 {
-    pvtTriangleSet* set = &ascent->set;
-    const size_t bytes = (size_t)set->cornerCount * sizeof *set->corners;
-    float(*before)[3] = pvtAllocate(context, (size_t)set->cornerCount, sizeof *before);
-    float(*after)[3] = pvtAllocate(context, (size_t)set->cornerCount, sizeof *after);
-    const pvtStatus status =
-        before == NULL || after == NULL ? pvtContext_GetStatus(context) : PVT_OK;
-    if (status == PVT_OK) {
-        memcpy(before, set->corners, bytes);
-        pvtAscent_Step(context, ascent, false);
-        memcpy(after, set->corners, bytes);
-        memcpy(set->corners, before, bytes);
-        for (int c = 0; c < set->cornerCount; ++c) {
-            float step[3];
-            bool moves = false;
-            for (int axis = 0; axis < 3; ++axis) {
-                step[axis] = after[c][axis] - before[c][axis];
-                moves = moves || step[axis] != 0.0F;
+    (void)worker;
+    const Polishing* polishing = taskData;
+    for (size_t i = begin; i < end; ++i) {
+        const uint32_t corner = polishing->group[i];
+        MoveCorner(polishing->ascent, corner, polishing->steps[corner]);
+    }
+}
+
+// Of the triangles around a corner, marks all; false when one of them is taken already.
+static bool TakeTriangles(Polishing* polishing, uint32_t corner)
+{
+    const pvtTriangleSet* set = &polishing->ascent->set;
+    for (int pass = 0; pass < 2; ++pass) {
+        for (int t = 0; t < set->triangleCount; ++t) {
+            const uint32_t* corners = set->triangles[t];
+            if (corners[0] != corner && corners[1] != corner && corners[2] != corner) {
+                continue;
             }
-            if (moves && !set->isFixed[c]) {
-                MoveCorner(ascent, (uint32_t)c, step);
+            if (pass == 0 && polishing->isTaken[t]) {
+                return false;
             }
+            polishing->isTaken[t] = pass == 1;
         }
     }
-    pvtRelease(context, before);
-    pvtRelease(context, after);
-    return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
+    return true;
+}
+
+static void ChooseGroup(Polishing* polishing)
+{
+    const pvtTriangleSet* set = &polishing->ascent->set;
+    memset(polishing->isTaken, 0, (size_t)set->triangleCount * sizeof *polishing->isTaken);
+    polishing->groupSize = 0;
+    for (uint32_t c = 0; c < (uint32_t)set->cornerCount; ++c) {
+        if (polishing->isLeft[c] && TakeTriangles(polishing, c)) {
+            polishing->group[polishing->groupSize++] = c;
+            polishing->isLeft[c] = false;
+        }
+    }
+}
+
+// A step of the ascent that never leaves the inside.
+static void PolishOnce(pvtContext* context, Polishing* polishing)
+{
+    pvtTriangleSet* set = &polishing->ascent->set;
+    const size_t bytes = (size_t)set->cornerCount * sizeof *set->corners;
+    memcpy(polishing->steps, set->corners, bytes);
+    pvtAscent_Step(context, polishing->ascent, false);
+    for (int c = 0; c < set->cornerCount; ++c) {
+        float* step = polishing->steps[c];
+        polishing->isLeft[c] = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float before = step[axis];
+            step[axis] = set->corners[c][axis] - before;
+            set->corners[c][axis] = before;
+            polishing->isLeft[c] = polishing->isLeft[c] || (step[axis] != 0.0F && !set->isFixed[c]);
+        }
+    }
+    for (ChooseGroup(polishing); polishing->groupSize > 0; ChooseGroup(polishing)) {
+        pvtParallelFor(context, MoveCorners, polishing->groupSize, 1, polishing);
+    }
+}
+
+static pvtStatus Polish(pvtContext* context, pvtAscent* ascent)
+{
+    const size_t corners = (size_t)ascent->set.cornerCount;
+    Polishing polishing = {.ascent = ascent};
+    polishing.steps = pvtAllocate(context, corners, sizeof *polishing.steps);
+    polishing.isLeft = pvtAllocate(context, corners, sizeof *polishing.isLeft);
+    polishing.group = pvtAllocate(context, corners, sizeof *polishing.group);
+    polishing.isTaken = pvtAllocate(context, (size_t)ascent->set.triangleCount, sizeof(bool));
+    pvtStatus status = polishing.steps == NULL || polishing.isLeft == NULL ||
+                               polishing.group == NULL || polishing.isTaken == NULL
+                           ? pvtContext_GetStatus(context)
+                           : PVT_OK;
+    for (int i = 0; i < ascent->options->polish && status == PVT_OK; ++i) {
+        ascent->reach = POLISH_REACH;
+        PolishOnce(context, &polishing);
+        status = pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
+    }
+    pvtRelease(context, polishing.steps);
+    pvtRelease(context, polishing.isLeft);
+    pvtRelease(context, polishing.group);
+    pvtRelease(context, polishing.isTaken);
+    return status;
 }
 
 pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent)
@@ -252,9 +319,5 @@ pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent)
     pvtRelease(context, settling.isSettled);
     pvtRelease(context, settling.isOutside);
     pvtRelease(context, settling.contacts);
-    for (int i = 0; i < ascent->options->polish && status == PVT_OK; ++i) {
-        ascent->reach = POLISH_REACH;
-        status = PolishOnce(context, ascent);
-    }
-    return status;
+    return status == PVT_OK ? Polish(context, ascent) : status;
 }

@@ -298,7 +298,7 @@ static SearchSize GetSearchSize(const pvtBuild* build)
     const pvtPlanOptions whole = pvtDefaultPlanOptions();
     // What ascends needs no more than a start, and leaves it far behind.
     if (isFast && pvtMayAscend(build)) {
-        return (SearchSize){8, 12, 8};
+        return (SearchSize){12, 16, 8};
     }
     // A third of the candidates: in a short search the others hardly count.
     return isFast || pvtMayAscend(build)
