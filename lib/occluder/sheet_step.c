@@ -139,42 +139,58 @@ pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build)
                           &build->cells, &build->stats.measureOfSolid);
 }
 
-// The triangles that the check objects to; `isOutside` has a count for each.
-static pvtStatus TakeOutside(pvtContext* context, const pvtMesh* occluder,
-                             const uint64_t* isOutside, pvtMesh* outside)
+static double GetWidth(const pvtMesh* mesh, size_t triangle)
 {
-    uint32_t* indices = pvtAllocate(context, 3 * occluder->triangleCount, sizeof *indices);
+    double longest = 0.0;
+    pvtVec3 sides[3];
+    for (size_t k = 0; k < 3; ++k) {
+        const uint32_t* corners = mesh->indices + 3 * triangle;
+        sides[k] = pvtSub(mesh->positions[corners[(k + 1) % 3]], mesh->positions[corners[k]]);
+        longest = fmax(longest, pvtLength3(sides[k]));
+    }
+    return longest > 0.0 ? pvtLength3(pvtCross(sides[0], sides[1])) / longest : 0.0;
+}
+
+// The triangles that `counts` (one each, null: all) has some for and that are wider than this.
+static pvtStatus TakeTriangles(pvtContext* context, const pvtMesh* mesh, const uint64_t* counts,
+                               double width, pvtMesh* taken)
+{
+    uint32_t* indices = pvtAllocate(context, 3 * mesh->triangleCount, sizeof *indices);
     if (indices == NULL) {
         return pvtContext_GetStatus(context);
     }
     size_t count = 0;
-    for (size_t t = 0; t < occluder->triangleCount; ++t) {
-        if (isOutside[t] > 0) {
-            memcpy(indices + 3 * count++, occluder->indices + 3 * t, 3 * sizeof *indices);
+    for (size_t t = 0; t < mesh->triangleCount; ++t) {
+        if ((counts == NULL || counts[t] > 0) && GetWidth(mesh, t) > width) {
+            memcpy(indices + 3 * count++, mesh->indices + 3 * t, 3 * sizeof *indices);
         }
     }
-    const pvtStatus status = pvtCreateMesh(context, occluder->positions, occluder->positionCount,
-                                           indices, count, outside);
+    const pvtStatus status =
+        pvtCreateMesh(context, mesh->positions, mesh->positionCount, indices, count, taken);
     pvtRelease(context, indices);
     return status;
 }
 
 // What the promise says of panels on the surface: nothing is left of them without it, but what lies
-// in allowed voxels and cells.
+// in allowed voxels and cells, and dust of a few roundings that is narrower than the slack.
 static pvtStatus CheckPanels(pvtContext* context, pvtBuild* build, const uint64_t* isOutside)
 {
     pvtBuildStats* stats = &build->stats;
     const pvtMesh* mesh = &build->occluder.mesh;
     const pvtSurfaceReach reach = {.distance = stats->deviation, .slack = stats->voxelSize / 256.0};
     const pvtInterior allowed = {.allowed = &build->allowed, .cells = &build->cells};
-    pvtMesh outside = {0}, rest = {0};
-    pvtStatus status = TakeOutside(context, mesh, isOutside, &outside);
+    pvtMesh outside = {0}, rest = {0}, wide = {0};
+    pvtStatus status = TakeTriangles(context, mesh, isOutside, 0.0, &outside);
     if (status == PVT_OK) {
         status = pvtTakeOffSurface(context, &reach, build->mesh, &outside, &rest);
     }
     if (status == PVT_OK) {
-        status = pvtCheckOccluder(context, &allowed, &rest, &stats->outside);
+        status = TakeTriangles(context, &rest, NULL, reach.slack, &wide);
     }
+    if (status == PVT_OK) {
+        status = pvtCheckOccluder(context, &allowed, &wide, &stats->outside);
+    }
+    pvtMesh_Free(context, &wide);
     pvtMesh_Free(context, &rest);
     pvtMesh_Free(context, &outside);
     return status;
