@@ -103,6 +103,7 @@ static float GetReach(const pvtField* field, const float from[3], const float wa
 }
 
 // What a triangle on an edge could gain: the pull on its middle times the way that it could go.
+// None grows from panels on the surface, since it would not be inside there.
 static float JudgeEdge(const pvtAscent* ascent, int edge, float tip[3])
 {
     const pvtTriangleSet* set = &ascent->set;
@@ -110,7 +111,8 @@ static float JudgeEdge(const pvtAscent* ascent, int edge, float tip[3])
     const float strength = sqrtf(pull[0] * pull[0] + pull[1] * pull[1] + pull[2] * pull[2]);
     const float* a = set->corners[set->edges[edge].ends[0]];
     const float* b = set->corners[set->edges[edge].ends[1]];
-    if (!(strength > 0.0F)) {
+    if (!(strength > 0.0F) || set->isFixed[set->edges[edge].ends[0]] ||
+        set->isFixed[set->edges[edge].ends[1]]) {
         return 0.0F;
     }
     float middle[3], way[3];

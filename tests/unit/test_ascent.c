@@ -3,6 +3,7 @@
 
 #include "base/vector.h"
 #include "occluder/ascent.h"
+#include "occluder/ascent_state.h"
 #include "occluder/contacts.h"
 #include "occluder/crossing.h"
 #include "occluder/pull.h"
@@ -342,6 +343,39 @@ static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
     DestroyTestContext(context);
 }
 
+// What hangs on a panel on the surface would not be inside.
+static void no_triangle_grows_from_fixed_corners(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 6, 12.0F, &lesson);
+    pvtAscent ascent = {.field = lesson.field, .puller = lesson.puller};
+    CHECK_OK(context, pvtCreateTriangleSet(context, 48, 16, &ascent.set));
+    for (uint32_t c = 0; c < 18; ++c) {
+        pvtTriangleSet_AddCorner(&ascent.set, lesson.set.corners[c], c < 9);
+    }
+    for (uint32_t t = 0; t < 6; ++t) {
+        pvtTriangleSet_AddTriangle(&ascent.set, (uint32_t[3]){3 * t, 3 * t + 1, 3 * t + 2}, 0);
+    }
+    pvtTriangleSet_FindEdges(&ascent.set);
+    float speeds[48][3] = {{0}}, squares[48] = {1.0F};
+    ascent.speeds = speeds;
+    ascent.squares = squares;
+    const pvtPullOptions options = {.count = 64, .softness = 10.0F, .wantsEdges = true};
+    pvtPullCorners(context, &options, &ascent.puller);
+    pvtAscent_Grow(&ascent, 10);
+    assert_int_equal(ascent.set.triangleCount, 15); // one on each of the nine edges that may
+    for (int t = 6; t < ascent.set.triangleCount; ++t) {
+        for (int k = 0; k < 3; ++k) {
+            assert_false(ascent.set.isFixed[ascent.set.triangles[t][k]]);
+        }
+    }
+    pvtTriangleSet_Free(context, &ascent.set);
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
 static void triangles_cross_where_they_pass_through_each_other(void** state)
 {
     (void)state;
@@ -557,6 +591,7 @@ int main(void)
         cmocka_unit_test(one_look_tells_less_than_all),
         cmocka_unit_test(a_share_is_the_same_with_pulls_and_without),
         cmocka_unit_test(contacts_bring_triangles_inside_and_keep_them_there),
+        cmocka_unit_test(no_triangle_grows_from_fixed_corners),
         cmocka_unit_test(triangles_cross_where_they_pass_through_each_other),
         cmocka_unit_test(triangles_may_come_up_to_the_surface_and_no_farther),
         cmocka_unit_test(what_the_test_finds_inside_passes_the_check),
