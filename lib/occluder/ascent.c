@@ -41,6 +41,15 @@ pvtVec3 pvtAscent_GetPlace(const pvtAscent* ascent, const float corner[3])
                      (float)(origin.z + h * (double)corner[2])};
 }
 
+void pvtAscent_GetTriangle(const pvtAscent* ascent, int triangle, pvtVec3 corners[3])
+{
+    for (int k = 0; k < 3; ++k) {
+        const float* corner = ascent->set.corners[ascent->set.triangles[triangle][k]];
+        corners[k] = pvtScale(pvtSub(pvtAscent_GetPlace(ascent, corner), ascent->frame.origin),
+                              1.0 / ascent->frame.voxelSize);
+    }
+}
+
 static void FreeAscent(pvtContext* context, pvtAscent* ascent)
 {
     pvtTriangleSet_Free(context, &ascent->set);

@@ -44,7 +44,14 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges);
 /// lets them. Triangles that cannot be brought inside are taken away.
 pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent);
 
+/// Of a mesh that is inside, moves corners towards their goals [vx], as far as it stays there.
+pvtStatus pvtAscent_Return(pvtContext* context, pvtAscent* ascent, const float (*goals)[3]);
+/// Moves the corners of a mesh that is inside by a few more steps, as far as it stays there.
+pvtStatus pvtAscent_Polish(pvtContext* context, pvtAscent* ascent);
+
 /// [wu] as files store it.
 pvtVec3 pvtAscent_GetPlace(const pvtAscent* ascent, const float corner[3]);
+/// [vx] of a triangle as it will be read: rounded to what files store.
+void pvtAscent_GetTriangle(const pvtAscent* ascent, int triangle, pvtVec3 corners[3]);
 
 #endif
