@@ -222,7 +222,7 @@ pvtStatus pvtAscendOccluder(pvtContext* context, const pvtAscentOptions* options
         status = pvtAscent_Climb(context, ascent);
     }
     if (status == PVT_OK) {
-        status = pvtAscent_Settle(context, ascent);
+        status = pvtAscent_Polish(context, ascent);
     }
     if (status == PVT_OK) {
         status = StoreTriangles(context, ascent, occluder);

@@ -36,14 +36,13 @@ void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count);
 /// Adds up to `count` triangles to the edges behind which there is most to hide; they start as
 /// slivers. Uses the puller's last pull, with its edges.
 void pvtAscent_Grow(pvtAscent* ascent, int count);
-/// All climbs and cycles; `set` is the best then.
+/// All climbs and cycles; `set` is the best then, and inside.
 pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent);
 /// Pulls with the sights that come next, and moves all corners by a step.
 void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges);
-/// Moves triangles inwards until the inside test finds each inside, and then out again as far as it
-/// lets them. Triangles that cannot be brought inside are taken away.
+/// Moves triangles inwards until the inside test finds each inside, and anchors them there.
+/// Triangles that cannot be brought inside are taken away.
 pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent);
-
 /// Of a mesh that is inside, moves corners towards their goals [vx], as far as it stays there.
 pvtStatus pvtAscent_Return(pvtContext* context, pvtAscent* ascent, const float (*goals)[3]);
 /// Moves the corners of a mesh that is inside by a few more steps, as far as it stays there.

@@ -195,32 +195,33 @@ static bool RunLeg(pvtContext* context, pvtAscent* ascent, const Leg* leg)
     return true;
 }
 
-static void KeepIfBetter(pvtContext* context, pvtAscent* ascent)
+// Judged when it is inside: what a climb finds in thin parts may be lost by that.
+static pvtStatus KeepIfBetter(pvtContext* context, pvtAscent* ascent)
 {
     pvtAscent_Prune(context, ascent, ascent->options->budget);
-    const double worth = Judge(context, ascent);
-    if (worth > ascent->bestWorth) {
+    const pvtStatus status = pvtAscent_Settle(context, ascent);
+    const double worth = status == PVT_OK ? Judge(context, ascent) : 0.0;
+    if (status == PVT_OK && worth > ascent->bestWorth) {
         ascent->bestWorth = worth;
         pvtTriangleSet_Copy(&ascent->set, &ascent->best);
     }
+    return status;
 }
 
 // From the start again, and from other sights on: that is enough to end elsewhere.
-static bool RunClimb(pvtContext* context, pvtAscent* ascent, int attempt)
+static pvtStatus RunClimb(pvtContext* context, pvtAscent* ascent, int attempt, bool* goesOn)
 {
-    bool goesOn = true;
     ascent->next = ascent->sights.count * (size_t)attempt / (size_t)ascent->options->tries;
     pvtTriangleSet_Copy(&ascent->start, &ascent->set);
     TakeRest(ascent);
-    for (size_t i = 0; i < sizeof climb / sizeof *climb && goesOn; ++i) {
+    for (size_t i = 0; i < sizeof climb / sizeof *climb && *goesOn; ++i) {
         BeginLeg(ascent, &climb[i]);
-        goesOn = RunLeg(context, ascent, &climb[i]);
+        *goesOn = RunLeg(context, ascent, &climb[i]);
     }
-    KeepIfBetter(context, ascent);
-    return goesOn;
+    return KeepIfBetter(context, ascent);
 }
 
-static bool RunCycle(pvtContext* context, pvtAscent* ascent)
+static pvtStatus RunCycle(pvtContext* context, pvtAscent* ascent, bool* goesOn)
 {
     const int growth = (int)(GROWTH * ascent->options->budget);
     pvtTriangleSet_Copy(&ascent->best, &ascent->set);
@@ -228,21 +229,21 @@ static bool RunCycle(pvtContext* context, pvtAscent* ascent)
     BeginLeg(ascent, &cycle);
     pvtAscent_Step(context, ascent, true);
     pvtAscent_Grow(ascent, growth > 1 ? growth : 1);
-    const bool goesOn = RunLeg(context, ascent, &cycle);
-    KeepIfBetter(context, ascent);
-    return goesOn;
+    *goesOn = RunLeg(context, ascent, &cycle);
+    return KeepIfBetter(context, ascent);
 }
 
 pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
 {
+    pvtStatus status = PVT_OK;
     bool goesOn = true;
     ascent->bestWorth = -1.0;
-    for (int attempt = 0; attempt < ascent->options->tries && goesOn; ++attempt) {
-        goesOn = RunClimb(context, ascent, attempt);
+    for (int i = 0; i < ascent->options->tries && goesOn && status == PVT_OK; ++i) {
+        status = RunClimb(context, ascent, i, &goesOn);
     }
-    for (int i = 0; i < ascent->options->cycles && goesOn; ++i) {
-        goesOn = RunCycle(context, ascent);
+    for (int i = 0; i < ascent->options->cycles && goesOn && status == PVT_OK; ++i) {
+        status = RunCycle(context, ascent, &goesOn);
     }
     pvtTriangleSet_Copy(&ascent->best, &ascent->set);
-    return pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
+    return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // From nearly inside to inside. The field knows the border to a fraction of a voxel; what the exact
 // test objects to keeps a greater distance from it, round after round. Where the inside is too thin
-// for that, triangles go back to where they began, and from there as far towards where the ascent
-// had left them as they can (polish.c).
+// for that, triangles go back to where they were inside the last time, and from there as far
+// towards where the ascent had left them as they can (polish.c).
 #include "ascent_state.h"
 
 #include "base/context.h"
@@ -216,5 +216,9 @@ pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent)
     pvtRelease(context, settling.isOutside);
     pvtRelease(context, settling.contacts);
     pvtRelease(context, settling.goals);
-    return status == PVT_OK ? pvtAscent_Polish(context, ascent) : status;
+    if (status == PVT_OK) {
+        memcpy(ascent->set.anchors, ascent->set.corners,
+               (size_t)ascent->set.cornerCount * sizeof *ascent->set.anchors);
+    }
+    return status;
 }
