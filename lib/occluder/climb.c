@@ -130,6 +130,7 @@ static double Judge(pvtContext* context, pvtAscent* ascent)
     return sum / (double)count;
 }
 
+// Forgets what is known of the corners and contacts of another set.
 static void TakeRest(pvtAscent* ascent)
 {
     const size_t corners = (size_t)ascent->set.cornerCapacity;
@@ -245,5 +246,6 @@ pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
         status = RunCycle(context, ascent, &goesOn);
     }
     pvtTriangleSet_Copy(&ascent->best, &ascent->set);
+    TakeRest(ascent);
     return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
 }

@@ -10,7 +10,7 @@
 
 enum { ATTEMPTS = 3, RETURNS = 6 };
 
-static const float POLISH_REACH = 0.25F; // [vx]
+static const float POLISH_REACH = 0.1F;  // [vx]
 static const float LEAST_RETURN = 0.03F; // [vx]
 
 static bool IsInside(const pvtAscent* ascent, int triangle)
