@@ -126,7 +126,8 @@ static void ChooseGoals(Settling* settling, const float (*pushed)[3])
 {
     const pvtTriangleSet* set = &settling->ascent->set;
     for (int c = 0; c < set->cornerCount; ++c) {
-        if (memcmp(set->corners[c], pushed[c], sizeof *set->corners) == 0) {
+        const float* corner = set->corners[c];
+        if (corner[0] == pushed[c][0] && corner[1] == pushed[c][1] && corner[2] == pushed[c][2]) {
             memcpy(settling->goals[c], pushed[c], sizeof *settling->goals);
         }
     }
