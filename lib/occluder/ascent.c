@@ -7,9 +7,9 @@
 // other views, there is nothing to gain from the pixels of any of them.
 //
 // More triangles than the budget has start, and the least useful are taken away while the others
-// move on: those that are left had the choice of their places (climb.c, restructure.c). At last the
-// mesh, which has been inside but for a fraction of a voxel, settles until the exact test agrees
-// (settle.c).
+// move on: those that are left had the choice of their places (climb.c, restructure.c). A mesh that
+// has climbed is inside but for a fraction of a voxel, and settles until the exact test agrees
+// (settle.c, polish.c).
 #include "ascent.h"
 #include "ascent_state.h"
 
@@ -59,7 +59,6 @@ static void FreeAscent(pvtContext* context, pvtAscent* ascent)
     pvtSightSet_Free(context, &ascent->sights);
     pvtPuller_Free(context, &ascent->puller);
     pvtContactSet_Free(context, &ascent->contacts);
-    pvtRelease(context, ascent->margins);
     pvtRelease(context, ascent->speeds);
     pvtRelease(context, ascent->squares);
     pvtRelease(context, ascent->moved);
@@ -114,12 +113,11 @@ static pvtStatus MakeRoom(pvtContext* context, const pvtOccluder* occluder, pvtA
     if (status == PVT_OK) {
         status = pvtCreateContacts(context, triangles, &ascent->contacts);
     }
-    ascent->margins = pvtAllocate(context, (size_t)triangles, sizeof *ascent->margins);
     ascent->speeds = pvtAllocate(context, corners, sizeof *ascent->speeds);
     ascent->squares = pvtAllocate(context, corners, sizeof *ascent->squares);
     ascent->moved = pvtAllocate(context, corners, sizeof *ascent->moved);
-    return status == PVT_OK && (ascent->margins == NULL || ascent->speeds == NULL ||
-                                ascent->squares == NULL || ascent->moved == NULL)
+    return status == PVT_OK &&
+                   (ascent->speeds == NULL || ascent->squares == NULL || ascent->moved == NULL)
                ? pvtContext_GetStatus(context)
                : status;
 }

@@ -17,7 +17,6 @@ typedef struct pvtAscent {
     pvtSightSet sights;
     pvtPuller puller;
     pvtContactSet contacts;
-    float* margins;       ///< [vx] of each triangle: the depth that it is to keep
     float (*speeds)[3];   ///< of each corner: the running mean of its pulls
     float* squares;       ///< of each corner: the running mean of their squares
     int32_t* moved;       ///< scratch, one a corner

@@ -91,25 +91,23 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
     // Contacts change slowly: they are looked for now and then, a little farther away.
     const bool isLate = ascent->softness < LATE_SOFTNESS;
-    pvtContactOptions contact = {.inside = ascent->options->inside,
-                                 .margins = ascent->margins,
-                                 .band = AHEAD * ascent->reach,
-                                 .piece = isLate ? FINE_PIECE : COARSE_PIECE,
-                                 .isAnew = ascent->contactAge == 0};
+    const pvtContactOptions contact = {.inside = ascent->options->inside,
+                                       .band = AHEAD * ascent->reach,
+                                       .piece = isLate ? FINE_PIECE : COARSE_PIECE,
+                                       .isAnew = ascent->contactAge == 0};
     if (ascent->contactAge++ % (isLate ? LATE_CONTACT_STEPS : CONTACT_STEPS) == 0) {
         pvtFindContacts(context, &contact, &ascent->field, &ascent->set, &ascent->contacts);
     } else {
         pvtUpdateContacts(&ascent->field, &ascent->set, &ascent->contacts);
     }
-    contact.band = ascent->reach;
     for (int c = 0; c < ascent->set.cornerCount; ++c) {
         if (ascent->set.isFixed[c]) {
             memset(ascent->puller.corners[c], 0, sizeof ascent->puller.corners[c]);
         }
     }
-    pvtSlideAlong(&contact, &ascent->contacts, &ascent->set, SWEEPS, ascent->puller.corners);
+    pvtSlideAlong(&ascent->contacts, ascent->reach, &ascent->set, SWEEPS, ascent->puller.corners);
     MoveCorners(ascent);
-    pvtPushInside(&ascent->contacts, &ascent->field, ascent->margins, SWEEPS, &ascent->set);
+    pvtPushInside(&ascent->contacts, &ascent->field, SWEEPS, &ascent->set);
 }
 
 // What the triangles hide, as a share of all that can be: over all sights.

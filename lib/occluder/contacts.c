@@ -153,7 +153,7 @@ static void StartProbe(const ContactTask* task, int triangle, Probe* probe)
     probe->inside = task->options->inside;
     probe->field = task->field;
     probe->piece = task->options->piece;
-    probe->limit = task->options->margins[triangle] + task->options->band;
+    probe->limit = task->options->band;
     pvtRandom random = pvtMakeRandom(task->contacts->round, STREAM);
     const float u = (float)pvtRandom_Unit(&random), v = (float)pvtRandom_Unit(&random);
     probe->at[0] = u + v < 1.0F ? u : 1.0F - u;
@@ -289,8 +289,8 @@ void pvtUpdateContacts(const pvtField* field, const pvtTriangleSet* set, pvtCont
     }
 }
 
-void pvtSlideAlong(const pvtContactOptions* options, const pvtContactSet* contacts,
-                   const pvtTriangleSet* set, int sweeps, float (*velocities)[3])
+void pvtSlideAlong(const pvtContactSet* contacts, float band, const pvtTriangleSet* set, int sweeps,
+                   float (*velocities)[3])
 {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (int i = 0; i < contacts->count; ++i) {
@@ -303,17 +303,15 @@ void pvtSlideAlong(const pvtContactOptions* options, const pvtContactSet* contac
                     contact->shares[k] * (v[0] * contact->inward[0] + v[1] * contact->inward[1] +
                                           v[2] * contact->inward[2]);
             }
-            const bool isNear =
-                contact->depth < options->margins[contact->triangle] + options->band;
-            if (speed < 0.0F && isNear) {
+            if (speed < 0.0F && contact->depth < band) {
                 MoveCorners(set, contact, contact->inward, -speed, velocities);
             }
         }
     }
 }
 
-void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, const float* margins,
-                   int sweeps, pvtTriangleSet* set)
+void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, int sweeps,
+                   pvtTriangleSet* set)
 {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (int i = 0; i < contacts->count; ++i) {
@@ -321,9 +319,8 @@ void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, const f
             float point[3], inward[3];
             GetContactPoint(set, contact, point);
             const float depth = pvtField_GetDepthAndInward(field, point, inward);
-            const float lack = margins[contact->triangle] - depth;
-            if (lack > 0.0F) {
-                MoveCorners(set, contact, inward, lack, set->corners);
+            if (depth < 0.0F) {
+                MoveCorners(set, contact, inward, -depth, set->corners);
             }
         }
     }

@@ -30,8 +30,7 @@ typedef struct pvtContactSet {
 
 typedef struct pvtContactOptions {
     const pvtInsideTest* inside; ///< what the field is of
-    const float* margins;        ///< [vx] of each triangle: the depth that it is to keep
-    float band;                  ///< [vx] how near to that a contact begins
+    float band;                  ///< [vx] how near to the border a contact begins
     float piece; ///< [vx] along a side: a triangle is probed once in pieces of this size
     bool isAnew; ///< the triangles are others than the last time
 } pvtContactOptions;
@@ -44,13 +43,13 @@ void pvtFindContacts(pvtContext* context, const pvtContactOptions* options, cons
                      const pvtTriangleSet* set, pvtContactSet* contacts);
 /// Depths and directions anew, at the same points of the triangles.
 void pvtUpdateContacts(const pvtField* field, const pvtTriangleSet* set, pvtContactSet* contacts);
-/// Takes from the corners' velocities what would move a contact within the band outwards, and as
-/// little else as possible: `sweeps` passes over all contacts.
-void pvtSlideAlong(const pvtContactOptions* options, const pvtContactSet* contacts,
-                   const pvtTriangleSet* set, int sweeps, float (*velocities)[3]);
-/// Moves corners so that contacts are as deep as their triangle's margin asks for.
-void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, const float* margins,
-                   int sweeps, pvtTriangleSet* set);
+/// Takes from the corners' velocities what would move a contact nearer to the border than `band`
+/// [vx] outwards, and as little else as possible: `sweeps` passes over all contacts.
+void pvtSlideAlong(const pvtContactSet* contacts, float band, const pvtTriangleSet* set, int sweeps,
+                   float (*velocities)[3]);
+/// Moves corners so that no contact is outside.
+void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, int sweeps,
+                   pvtTriangleSet* set);
 
 /// Moves the corners of a contact's triangle so that its point goes inwards by `amount` [vx].
 void pvtMoveContact(const pvtContact* contact, pvtTriangleSet* set, float amount);

@@ -305,12 +305,10 @@ static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
     const pvtInterior interior = {.allowed = &lesson.grid};
     pvtInsideTest inside;
     CHECK_OK(context, pvtCreateInsideTest(context, &interior, &inside));
-    const float margins[12] = {0};
-    const pvtContactOptions options = {
-        .inside = &inside, .margins = margins, .band = 0.5F, .piece = 8.0F};
+    const pvtContactOptions options = {.inside = &inside, .band = 0.5F, .piece = 8.0F};
     for (int round = 0; round < 40; ++round) {
         pvtFindContacts(context, &options, &lesson.field, &lesson.set, &contacts);
-        pvtPushInside(&contacts, &lesson.field, margins, 3, &lesson.set);
+        pvtPushInside(&contacts, &lesson.field, 3, &lesson.set);
     }
     for (int c = 0; c < lesson.set.cornerCount; ++c) {
         assert_true(GetDistance(lesson.set.corners[c]) < RADIUS + 0.9F);
@@ -325,7 +323,7 @@ static void contacts_bring_triangles_inside_and_keep_them_there(void** state)
             velocities[c][axis] = RollFloat(&random, -1.0F, 1.0F);
         }
     }
-    pvtSlideAlong(&options, &contacts, &lesson.set, 100, velocities);
+    pvtSlideAlong(&contacts, options.band, &lesson.set, 100, velocities);
     for (int i = 0; i < contacts.count; ++i) {
         const pvtContact* contact = &contacts.contacts[i];
         float speed = 0.0F;
