@@ -58,39 +58,16 @@ static double GetRadius(const pvtSolidOptions* options, const pvtGridFrame* fram
                                        : 0.0;
 }
 
-// Takes what is free beside the covered voxels of a row, over faces.
-static void WalkRow(const pvtBitGrid* surface, const pvtBitGrid* covered, int y, int z,
-                    uint64_t* outside)
-{
-    const int* size = surface->frame.size;
-    const size_t count = surface->wordsPerRow;
-    const uint64_t* touched = pvtBitGrid_GetRow(surface, y, z);
-    const uint64_t* row = pvtBitGrid_GetRow(covered, y, z);
-    const uint64_t* near[4] = {pvtBitGrid_GetRow(covered, y > 0 ? y - 1 : y, z),
-                               pvtBitGrid_GetRow(covered, y < size[1] - 1 ? y + 1 : y, z),
-                               pvtBitGrid_GetRow(covered, y, z > 0 ? z - 1 : z),
-                               pvtBitGrid_GetRow(covered, y, z < size[2] - 1 ? z + 1 : z)};
-    for (size_t i = 0; i < count; ++i) {
-        const uint64_t below = row[i] << 1 | (i > 0 ? row[i - 1] >> 63 : 0);
-        const uint64_t above = row[i] >> 1 | (i + 1 < count ? row[i + 1] << 63 : 0);
-        const uint64_t around = near[0][i] | near[1][i] | near[2][i] | near[3][i];
-        const uint64_t tail = i + 1 == count ? pvtBitGrid_GetTailMask(surface) : ~UINT64_C(0);
-        outside[i] |= (below | above | around) & ~touched[i] & tail;
-    }
-}
-
-// Where an opening is closed its lid moves in by as much.
+// Over faces, which is a ball of one voxel. Where an opening is closed its lid moves in by as much.
 static pvtStatus WalkIntoCreases(pvtContext* context, const pvtBitGrid* surface,
                                  pvtBitGrid* outside)
 {
     pvtStatus status = PVT_OK;
     for (int step = 0; step < CREASE_DEPTH && status == PVT_OK; ++step) {
-        pvtBitGrid covered;
-        status = pvtCopyBitGrid(context, outside, &covered);
-        for (int z = 0; z < surface->frame.size[2] && status == PVT_OK; ++z) {
-            for (int y = 0; y < surface->frame.size[1]; ++y) {
-                WalkRow(surface, &covered, y, z, pvtBitGrid_GetRow(outside, y, z));
-            }
+        pvtBitGrid covered = *outside;
+        status = pvtDilateGrid(context, &covered, 1, outside);
+        for (size_t i = 0; i < outside->wordCount; ++i) {
+            outside->words[i] &= ~surface->words[i];
         }
         pvtBitGrid_Free(context, &covered);
     }
