@@ -45,8 +45,7 @@ void pvtAscent_GetTriangle(const pvtAscent* ascent, int triangle, pvtVec3 corner
 {
     for (int k = 0; k < 3; ++k) {
         const float* corner = ascent->set.corners[ascent->set.triangles[triangle][k]];
-        corners[k] = pvtScale(pvtSub(pvtAscent_GetPlace(ascent, corner), ascent->frame.origin),
-                              1.0 / ascent->frame.voxelSize);
+        corners[k] = pvtToGrid(&ascent->frame, pvtAscent_GetPlace(ascent, corner));
     }
 }
 
@@ -74,8 +73,7 @@ static pvtStatus TakeTriangles(pvtContext* context, const pvtOccluder* occluder,
         return status;
     }
     for (size_t c = 0; c < mesh.positionCount; ++c) {
-        const pvtVec3 at = pvtScale(pvtSub(mesh.positions[c], occluder->frame.origin),
-                                    1.0 / occluder->frame.voxelSize);
+        const pvtVec3 at = pvtToGrid(&occluder->frame, mesh.positions[c]);
         pvtTriangleSet_AddCorner(&ascent->set, (float[3]){(float)at.x, (float)at.y, (float)at.z},
                                  false);
     }

@@ -13,6 +13,8 @@
 #include "base/random.h"
 #include "base/vector.h"
 #include "facets.h"
+#include "triangle_set.h"
+#include "voxel/bit_grid.h"
 
 #include <math.h>
 
@@ -40,11 +42,6 @@ typedef struct Bending {
     uint64_t next; // number of the batch's first trial: its dice
 } Bending;
 
-static pvtVec3 ToGrid(const pvtGridFrame* frame, pvtVec3 place)
-{
-    return pvtScale(pvtSub(place, frame->origin), 1.0 / frame->voxelSize);
-}
-
 // Close to a normal distribution: the sum of four even ones.
 static double Scatter(pvtRandom* random)
 {
@@ -66,8 +63,8 @@ static bool IsInside(const Bending* bending, const pvtFacetChange* change)
     for (int i = 0; i < change->count; ++i) {
         pvtVec3 corners[3];
         for (int c = 0; c < 3; ++c) {
-            corners[c] = ToGrid(&bending->frame, pvtGetChangedPlace(&bending->facets, change,
-                                                                    change->corners[i][c]));
+            corners[c] = pvtToGrid(&bending->frame, pvtGetChangedPlace(&bending->facets, change,
+                                                                       change->corners[i][c]));
         }
         if (!pvtInsideTest_HasTriangle(bending->options->inside, corners)) {
             return false;
@@ -86,8 +83,8 @@ static bool MayBeInside(const Bending* bending, const pvtFacetChange* change)
     for (int i = 0; i < change->count; ++i) {
         pvtVec3 corners[3];
         for (int c = 0; c < 3; ++c) {
-            corners[c] = ToGrid(&bending->frame, pvtGetChangedPlace(&bending->facets, change,
-                                                                    change->corners[i][c]));
+            corners[c] = pvtToGrid(&bending->frame, pvtGetChangedPlace(&bending->facets, change,
+                                                                       change->corners[i][c]));
         }
         for (int spot = 0; spot < 10; ++spot) {
             const pvtVec3 point = pvtAdd(
@@ -113,19 +110,14 @@ static bool Gains(const Bending* bending, pvtFacetChange* change)
     return change->screened > facets->screened && change->total > facets->total;
 }
 
-static bool HasCorner(const uint32_t* corners, uint32_t corner)
-{
-    return corners[0] == corner || corners[1] == corner || corners[2] == corner;
-}
-
 // The triangles around the corners that move; false when they are too many.
 static bool ListTriangles(const pvtMesh* mesh, pvtFacetChange* change)
 {
     change->count = 0;
     for (size_t t = 0; t < mesh->triangleCount; ++t) {
         const uint32_t* corners = mesh->indices + 3 * t;
-        if (!HasCorner(corners, change->moved[0]) &&
-            !HasCorner(corners, change->moved[change->movedCount - 1])) {
+        if (!pvtHasCorner(corners, change->moved[0]) &&
+            !pvtHasCorner(corners, change->moved[change->movedCount - 1])) {
             continue;
         }
         if (change->count == PVT_MAX_CHANGED_FACETS) {
@@ -202,7 +194,7 @@ static bool FindCornerToJoin(const pvtMesh* mesh, const uint32_t* corners, uint3
         const uint32_t other =
             mesh->indices[pvtRandom_Below(random, (uint32_t)(3 * mesh->triangleCount))];
         const pvtVec3 way = pvtSub(mesh->positions[other], mesh->positions[corner]);
-        if (!HasCorner(corners, other) && pvtDot(way, way) < least) {
+        if (!pvtHasCorner(corners, other) && pvtDot(way, way) < least) {
             least = pvtDot(way, way);
             *joined = other;
         }

@@ -2,11 +2,11 @@
 // Voxels at the border of the set ones are splatted as points, close enough to each other to leave
 // no pixel free between them: much faster than drawing the faces between them.
 #include "ceiling.h"
+#include "points.h"
 
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
-#include "base/vectors.h"
 #include "occlusion/distance.h"
 #include "occlusion/mask.h"
 #include "voxel/bit_grid.h"
@@ -156,14 +156,10 @@ static void ListCells(const pvtCellGrid* grid, int splits, PointList* list)
     }
 }
 
-// What a view makes of points in grid coordinates: pixel = dot(point, way) + offset.
-typedef struct Projection {
-    float right[3], up[3], offset[2];
-} Projection;
-
-static Projection MakeProjection(const pvtMaskFrame* frame, const pvtGridFrame* grid)
+// Of points in grid coordinates.
+static pvtPointProjection MakeProjection(const pvtMaskFrame* frame, const pvtGridFrame* grid)
 {
-    Projection projection;
+    pvtPointProjection projection;
     for (int axis = 0; axis < 3; ++axis) {
         projection.right[axis] = (float)(pvtGetAxis(frame->right, axis) * grid->voxelSize);
         projection.up[axis] = (float)(pvtGetAxis(frame->up, axis) * grid->voxelSize);
@@ -173,32 +169,16 @@ static Projection MakeProjection(const pvtMaskFrame* frame, const pvtGridFrame* 
     return projection;
 }
 
-enum { GROUP = 64 }; // points that are projected at once
-
-PVT_VECTOR_CLONES
-static void ProjectPoints(const Projection* projection, float* const points[3], size_t first,
-                          size_t count, float (*restrict places)[GROUP])
-{
-    const float* restrict x = points[0] + first;
-    const float* restrict y = points[1] + first;
-    const float* restrict z = points[2] + first;
-    for (size_t i = 0; i < count; ++i) {
-        places[0][i] = x[i] * projection->right[0] + y[i] * projection->right[1] +
-                       z[i] * projection->right[2] + projection->offset[0];
-        places[1][i] = x[i] * projection->up[0] + y[i] * projection->up[1] +
-                       z[i] * projection->up[2] + projection->offset[1];
-    }
-}
-
 static void SplatPoints(const CeilingTask* task, const pvtMaskFrame* frame, uint64_t* rows)
 {
-    const Projection projection = MakeProjection(frame, &task->frame);
+    const pvtPointProjection projection = MakeProjection(frame, &task->frame);
     const size_t words = (size_t)task->size / 64;
     const float size = (float)task->size;
-    float places[2][GROUP];
-    for (size_t first = 0; first < task->pointCount; first += GROUP) {
-        const size_t left = task->pointCount - first, count = left < GROUP ? left : GROUP;
-        ProjectPoints(&projection, task->points, first, count, places);
+    float places[2][PVT_POINT_GROUP];
+    for (size_t first = 0; first < task->pointCount; first += PVT_POINT_GROUP) {
+        const size_t left = task->pointCount - first,
+                     count = left < PVT_POINT_GROUP ? left : PVT_POINT_GROUP;
+        pvtProjectPoints(&projection, task->points, first, count, places);
         for (size_t i = 0; i < count; ++i) {
             const float x = places[0][i], y = places[1][i];
             if (x >= 0.0F && y >= 0.0F && x < size && y < size) {

@@ -551,7 +551,6 @@ static bool CrossesSurface(Walk* walk, const pvtVec3 corners[3])
 {
     const pvtTouching* touching = walk->test->interior.touching;
     const pvtCellGrid* cells = walk->test->interior.cells;
-    const pvtGridFrame* frame = &cells->voxels.frame;
     uint32_t seen[SEEN_SLOTS] = {0};
     int seenCount = 0;
     for (int i = 0; i < walk->notedCount; ++i) {
@@ -562,11 +561,7 @@ static bool CrossesSurface(Walk* walk, const pvtVec3 corners[3])
                 continue;
             }
             pvtVec3 surface[3], ends[2];
-            for (size_t c = 0; c < 3; ++c) {
-                const uint32_t index = touching->mesh->indices[3 * (size_t)triangle + c];
-                surface[c] = pvtScale(pvtSub(touching->mesh->positions[index], frame->origin),
-                                      1.0 / frame->voxelSize);
-            }
+            pvtGetGridTriangle(&cells->voxels.frame, touching->mesh, triangle, surface);
             if (pvtFindCrossing(corners, surface, ends) &&
                 pvtPassesBorder(cells, ends, &walk->outside)) {
                 return true;

@@ -24,9 +24,7 @@ static bool AreTrianglesAroundInside(const pvtAscent* ascent, uint32_t corner)
 {
     const pvtTriangleSet* set = &ascent->set;
     for (int t = 0; t < set->triangleCount; ++t) {
-        const uint32_t* corners = set->triangles[t];
-        if ((corners[0] == corner || corners[1] == corner || corners[2] == corner) &&
-            !IsInside(ascent, t)) {
+        if (pvtHasCorner(set->triangles[t], corner) && !IsInside(ascent, t)) {
             return false;
         }
     }
@@ -77,8 +75,7 @@ static bool TakeTriangles(Polishing* polishing, uint32_t corner)
     const pvtTriangleSet* set = &polishing->ascent->set;
     for (int pass = 0; pass < 2; ++pass) {
         for (int t = 0; t < set->triangleCount; ++t) {
-            const uint32_t* corners = set->triangles[t];
-            if (corners[0] != corner && corners[1] != corner && corners[2] != corner) {
+            if (!pvtHasCorner(set->triangles[t], corner)) {
                 continue;
             }
             if (pass == 0 && polishing->isTaken[t]) {

@@ -128,12 +128,8 @@ static float JudgeEdge(const pvtAscent* ascent, int edge, float tip[3])
 static int32_t GetTag(const pvtTriangleSet* set, const pvtTriangleEdge* edge)
 {
     for (int t = 0; t < set->triangleCount; ++t) {
-        int shared = 0;
-        for (int k = 0; k < 3; ++k) {
-            const uint32_t corner = set->triangles[t][k];
-            shared += corner == edge->ends[0] || corner == edge->ends[1] ? 1 : 0;
-        }
-        if (shared == 2) {
+        if (pvtHasCorner(set->triangles[t], edge->ends[0]) &&
+            pvtHasCorner(set->triangles[t], edge->ends[1])) {
             return set->tags[t];
         }
     }

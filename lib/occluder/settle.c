@@ -68,8 +68,8 @@ static void Unsettle(const Settling* settling, const uint32_t moved[3])
 {
     const pvtTriangleSet* set = &settling->ascent->set;
     for (int t = 0; t < set->triangleCount; ++t) {
-        for (int k = 0; k < 9; ++k) {
-            if (set->triangles[t][k / 3] == moved[k % 3]) {
+        for (int k = 0; k < 3; ++k) {
+            if (pvtHasCorner(set->triangles[t], moved[k])) {
                 settling->isSettled[t] = false;
             }
         }

@@ -4,12 +4,12 @@
 // pvtEvaluateOccluders; only those that could be hidden are kept, so that a view counts by how much
 // there is to hide.
 #include "sights.h"
+#include "points.h"
 
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/random.h"
 #include "base/vector.h"
-#include "base/vectors.h"
 #include "occlusion/stride.h"
 
 #include <string.h>
@@ -19,7 +19,6 @@ enum {
     MARGIN = 2,
     STREAM = 0x51675,
     EXPOSURES = 64, // sets of sides of a node
-    GROUP = 64,     // points that are projected at once
 };
 
 static const float WIDENING = 1.2F; // of nodes, which are seen as squares: cubes cover more
@@ -204,22 +203,6 @@ static uint64_t PackEven(uint64_t bits)
     return (bits | bits >> 16) & UINT64_C(0x00000000FFFFFFFF);
 }
 
-// [half px] on the screen.
-PVT_VECTOR_CLONES
-static void ProjectPoints(const Splatter* splatter, const pvtSight* sight, size_t first,
-                          size_t count, float (*restrict places)[GROUP])
-{
-    const float* x = splatter->points[0] + first;
-    const float* y = splatter->points[1] + first;
-    const float* z = splatter->points[2] + first;
-    for (size_t i = 0; i < count; ++i) {
-        places[0][i] = 2.0F * (x[i] * sight->right[0] + y[i] * sight->right[1] +
-                               z[i] * sight->right[2] + sight->x);
-        places[1][i] =
-            2.0F * (x[i] * sight->up[0] + y[i] * sight->up[1] + z[i] * sight->up[2] + sight->y);
-    }
-}
-
 // Sets the half pixels that a node covers, seen as a square; a small one sets that of its middle.
 static void SplatNode(uint64_t (*halves)[2], float x, float y, float reach)
 {
@@ -235,14 +218,26 @@ static void SplatNode(uint64_t (*halves)[2], float x, float y, float reach)
     }
 }
 
+// To half pixels.
+static pvtPointProjection MakeProjection(const pvtSight* sight)
+{
+    pvtPointProjection projection = {.offset = {2.0F * sight->x, 2.0F * sight->y}};
+    for (int axis = 0; axis < 3; ++axis) {
+        projection.right[axis] = 2.0F * sight->right[axis];
+        projection.up[axis] = 2.0F * sight->up[axis];
+    }
+    return projection;
+}
+
 static void SplatPoints(const Splatter* splatter, const pvtSight* sight, size_t begin, size_t end,
                         uint64_t (*halves)[2])
 {
+    const pvtPointProjection projection = MakeProjection(sight);
     const float reach = WIDENING * splatter->nodeSize / sight->pixelSize;
-    float places[2][GROUP];
-    for (size_t first = begin; first < end; first += GROUP) {
-        const size_t count = end - first < GROUP ? end - first : GROUP;
-        ProjectPoints(splatter, sight, first, count, places);
+    float places[2][PVT_POINT_GROUP];
+    for (size_t first = begin; first < end; first += PVT_POINT_GROUP) {
+        const size_t count = end - first < PVT_POINT_GROUP ? end - first : PVT_POINT_GROUP;
+        pvtProjectPoints(&projection, splatter->points, first, count, places);
         for (size_t i = 0; i < count; ++i) {
             const float x = places[0][i], y = places[1][i];
             if (x >= 0.0F && y >= 0.0F && x < 2 * SIZE && y < 2 * SIZE) {

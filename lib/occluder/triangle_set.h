@@ -46,6 +46,11 @@ void pvtTriangleSet_DropCorners(pvtTriangleSet* set, int32_t* moved);
 /// To be called after triangles were added or removed, before the edges are used.
 void pvtTriangleSet_FindEdges(pvtTriangleSet* set);
 
+static inline bool pvtHasCorner(const uint32_t corners[3], uint32_t corner)
+{
+    return corners[0] == corner || corners[1] == corner || corners[2] == corner;
+}
+
 /// Whether none of a triangle's corners may move.
 static inline bool pvtTriangleSet_IsFixed(const pvtTriangleSet* set, int triangle)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Planes as fixed-point graphs over their dominant axis.
 #include "base/vector.h"
+#include "voxel/bit_grid.h"
 
 #include <assert.h>
 #include <paravent/section.h>
@@ -75,7 +76,7 @@ pvtPlane pvtMakePlane(const pvtGridFrame* frame, pvtVec3 direction, pvtVec3 poin
     plane.slopeU = RoundSlope(-pvtGetAxis(direction, u) / length);
     plane.slopeV = RoundSlope(-pvtGetAxis(direction, v) / length);
     // With the rounded slopes, so that the plane turns about `point` and not about the origin.
-    const pvtVec3 grid = pvtScale(pvtSub(point, frame->origin), 1.0 / frame->voxelSize);
+    const pvtVec3 grid = pvtToGrid(frame, point);
     plane.offset =
         RoundToOdd(PLANE_ONE * pvtGetAxis(grid, (int)axis) - plane.slopeU * pvtGetAxis(grid, u) -
                    plane.slopeV * pvtGetAxis(grid, v));

@@ -4,6 +4,7 @@
 #define PVT_VOXEL_BIT_GRID_H
 
 #include "base/bits.h"
+#include "base/vector.h"
 
 #include <paravent/voxel.h>
 
@@ -20,6 +21,21 @@ pvtStatus pvtCreateBitGrid(pvtContext* context, const pvtGridFrame* frame, pvtBi
 pvtStatus pvtCopyBitGrid(pvtContext* context, const pvtBitGrid* grid, pvtBitGrid* copy);
 /// The smallest box around all set bits; false when there are none.
 bool pvtBitGrid_FindBounds(const pvtBitGrid* grid, pvtGridBox* box);
+
+/// World to grid coordinates [vx].
+static inline pvtVec3 pvtToGrid(const pvtGridFrame* frame, pvtVec3 place)
+{
+    return pvtScale(pvtSub(place, frame->origin), 1.0 / frame->voxelSize);
+}
+
+/// The same of a triangle's corners.
+static inline void pvtGetGridTriangle(const pvtGridFrame* frame, const pvtMesh* mesh,
+                                      size_t triangle, pvtVec3 corners[3])
+{
+    for (size_t k = 0; k < 3; ++k) {
+        corners[k] = pvtToGrid(frame, mesh->positions[mesh->indices[3 * triangle + k]]);
+    }
+}
 
 /// The greatest of a grid's three sizes.
 static inline int pvtGetLongestSide(const int size[3])

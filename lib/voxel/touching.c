@@ -70,10 +70,7 @@ static void AddTriangle(const Lister* lister, const pvtMesh* mesh, size_t triang
     const pvtGridFrame* frame = &lister->cells->voxels.frame;
     pvtVec3 corners[3];
     int low[3], high[3];
-    for (size_t k = 0; k < 3; ++k) {
-        const pvtVec3 p = mesh->positions[mesh->indices[3 * triangle + k]];
-        corners[k] = pvtScale(pvtSub(p, frame->origin), 1.0 / frame->voxelSize);
-    }
+    pvtGetGridTriangle(frame, mesh, triangle, corners);
     for (int axis = 0; axis < 3; ++axis) {
         const double a = pvtGetAxis(corners[0], axis), b = pvtGetAxis(corners[1], axis),
                      c = pvtGetAxis(corners[2], axis);
