@@ -279,12 +279,19 @@ static bool IsBoxInside(const pvtInsideTest* test, const Box* box)
             AreVoxelsOrCellsSet(test, box, &voxels));
 }
 
-// A box that is flat and lies between two layers may be in either.
+// Whether a box is flat along an axis and lies between two layers.
+static bool IsBetweenLayers(const Box* box, int axis, double* layer)
+{
+    *layer = RoundDown(box->low[axis] + 0.5);
+    return fabs(box->low[axis] - *layer) <= SLACK && fabs(box->high[axis] - *layer) <= SLACK;
+}
+
+// A box between two layers may be in either.
 static bool IsBoxInsideFrom(const pvtInsideTest* test, Box box, int firstAxis)
 {
+    double layer;
     for (int axis = firstAxis; axis < 3; ++axis) {
-        const double layer = RoundDown(box.low[axis] + 0.5);
-        if (fabs(box.low[axis] - layer) <= SLACK && fabs(box.high[axis] - layer) <= SLACK) {
+        if (IsBetweenLayers(&box, axis, &layer)) {
             box.low[axis] = box.high[axis] = layer - 2.0 * SLACK;
             if (IsBoxInsideFrom(test, box, axis + 1)) {
                 return true;
@@ -329,33 +336,78 @@ enum { MOST_NOTED = 2048, NOTED_SLOTS = 4096, SEEN_SLOTS = 2048, BINS = 64 };
 // A triangle on its way through the test.
 typedef struct Walk {
     const pvtInsideTest* test;
-    pvtVec3 outside;            // where it is not inside
-    bool isSomewhereAllowed;    // so that it began inside
-    pvtVec3 normal;             // of its plane, unit
-    double distance;            // of that from the origin
-    double reach;               // of a voxel along the normal, from its middle
-    uint64_t planeCells[BINS];  // of a voxel that the plane passes, by the height of its middle
-    uint64_t knownBins;         // of these
-    uint32_t noted[MOST_NOTED]; // voxels, by their place among those with cells
+    const pvtVec3* corners;    // three
+    pvtVec3 outside;           // where it is not inside
+    bool isSomewhereAllowed;   // so that it began inside
+    bool isInBorder;           // somewhere
+    bool crosses;              // the surface: then it is not inside
+    pvtVec3 normal;            // of its plane, unit
+    double distance;           // of that from the origin
+    double reach;              // of a voxel along the normal, from its middle
+    uint64_t planeCells[BINS]; // of a voxel that the plane passes, by the height of its middle
+    uint64_t knownBins;        // of these
     int notedCount;
+    uint32_t noted[MOST_NOTED];  // voxels, by their place among those with cells
     uint32_t slots[NOTED_SLOTS]; // hash table of them: 1 + the voxel
 } Walk;
 
-// False when there are too many.
+// Each triangle of the surface once, as long as there are not very many.
+static bool IsSeen(uint32_t* seen, int* count, uint32_t triangle)
+{
+    size_t slot = (triangle * (size_t)2654435761U) % SEEN_SLOTS;
+    for (; seen[slot] != 0; slot = (slot + 1) % SEEN_SLOTS) {
+        if (seen[slot] == triangle + 1) {
+            return true;
+        }
+    }
+    if (*count < SEEN_SLOTS / 2) {
+        seen[slot] = triangle + 1;
+        ++*count;
+    }
+    return false;
+}
+
+// Looks at the surface in the voxels that are noted, and forgets them.
+static void FindCrossings(Walk* walk)
+{
+    const pvtTouching* touching = walk->test->interior.touching;
+    const pvtCellGrid* cells = walk->test->interior.cells;
+    uint32_t seen[SEEN_SLOTS] = {0};
+    int seenCount = 0;
+    for (int i = 0; i < walk->notedCount && !walk->crosses; ++i) {
+        const uint32_t voxel = walk->noted[i];
+        for (uint32_t k = touching->starts[voxel];
+             k < touching->starts[voxel + 1] && !walk->crosses; ++k) {
+            const uint32_t triangle = touching->triangles[k];
+            if (IsSeen(seen, &seenCount, triangle)) {
+                continue;
+            }
+            pvtVec3 surface[3], ends[2];
+            pvtGetGridTriangle(&cells->voxels.frame, touching->mesh, triangle, surface);
+            walk->crosses = pvtFindCrossing(walk->corners, surface, ends) &&
+                            pvtPassesBorder(cells, ends, &walk->outside);
+        }
+    }
+    walk->notedCount = 0;
+    memset(walk->slots, 0, sizeof walk->slots);
+}
+
+// False when the triangle is found to cross the surface.
 static bool NoteVoxel(Walk* walk, size_t voxel)
 {
+    if (walk->notedCount == MOST_NOTED) {
+        FindCrossings(walk);
+    }
+    walk->isInBorder = true;
     size_t slot = (voxel * 2654435761U) % NOTED_SLOTS;
     for (; walk->slots[slot] != 0; slot = (slot + 1) % NOTED_SLOTS) {
         if (walk->slots[slot] == voxel + 1) {
             return true;
         }
     }
-    if (walk->notedCount == MOST_NOTED) {
-        return false;
-    }
     walk->slots[slot] = (uint32_t)voxel + 1;
     walk->noted[walk->notedCount++] = (uint32_t)voxel;
-    return true;
+    return !walk->crosses;
 }
 
 // The cells of a voxel that lie in the range.
@@ -494,7 +546,7 @@ static void LookForAllowed(Walk* walk, pvtVec3 point)
 static bool IsPieceInside(Walk* walk, const pvtVec3 corners[3])
 {
     const pvtInsideTest* test = walk->test;
-    double side;
+    double side, layer;
     const Box box = GetBox(corners, &side);
     if (IsDeepInside(test, &box)) {
         walk->isSomewhereAllowed = true;
@@ -503,7 +555,13 @@ static bool IsPieceInside(Walk* walk, const pvtVec3 corners[3])
     if (side < SLAB_SIDE && IsSlabInside(walk, &box)) {
         return true;
     }
-    if (IsBoxInsideFrom(test, box, 0)) {
+    if (walk->crosses) {
+        return false;
+    }
+    // What leaves the inside as a slab does as a box, unless it may be moved between layers.
+    const bool mayBeBox = side >= SLAB_SIDE || IsBetweenLayers(&box, 0, &layer) ||
+                          IsBetweenLayers(&box, 1, &layer) || IsBetweenLayers(&box, 2, &layer);
+    if (mayBeBox && IsBoxInsideFrom(test, box, 0)) {
         return test->interior.touching == NULL || test->interior.cells == NULL ||
                NoteBox(walk, &box);
     }
@@ -531,52 +589,13 @@ static bool IsPieceInside(Walk* walk, const pvtVec3 corners[3])
            IsPieceInside(walk, (pvtVec3[3]){middle, to, across});
 }
 
-// Each triangle of the surface once, as long as there are not very many.
-static bool IsSeen(uint32_t* seen, int* count, uint32_t triangle)
-{
-    size_t slot = (triangle * (size_t)2654435761U) % SEEN_SLOTS;
-    for (; seen[slot] != 0; slot = (slot + 1) % SEEN_SLOTS) {
-        if (seen[slot] == triangle + 1) {
-            return true;
-        }
-    }
-    if (*count < SEEN_SLOTS / 2) {
-        seen[slot] = triangle + 1;
-        ++*count;
-    }
-    return false;
-}
-
-static bool CrossesSurface(Walk* walk, const pvtVec3 corners[3])
-{
-    const pvtTouching* touching = walk->test->interior.touching;
-    const pvtCellGrid* cells = walk->test->interior.cells;
-    uint32_t seen[SEEN_SLOTS] = {0};
-    int seenCount = 0;
-    for (int i = 0; i < walk->notedCount; ++i) {
-        const uint32_t voxel = walk->noted[i];
-        for (uint32_t k = touching->starts[voxel]; k < touching->starts[voxel + 1]; ++k) {
-            const uint32_t triangle = touching->triangles[k];
-            if (IsSeen(seen, &seenCount, triangle)) {
-                continue;
-            }
-            pvtVec3 surface[3], ends[2];
-            pvtGetGridTriangle(&cells->voxels.frame, touching->mesh, triangle, surface);
-            if (pvtFindCrossing(corners, surface, ends) &&
-                pvtPassesBorder(cells, ends, &walk->outside)) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
                                pvtVec3* outside)
 {
     Walk walk;
     walk.test = test;
-    walk.isSomewhereAllowed = false;
+    walk.corners = corners;
+    walk.isSomewhereAllowed = walk.isInBorder = walk.crosses = false;
     walk.notedCount = 0;
     walk.knownBins = 0;
     memset(walk.slots, 0, sizeof walk.slots);
@@ -594,9 +613,13 @@ bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[
     if (isInside) {
         isInside = IsPieceInside(&walk, corners);
     }
-    if (isInside && walk.notedCount > 0) {
-        walk.outside = walk.isSomewhereAllowed ? walk.outside : corners[0];
-        isInside = walk.isSomewhereAllowed && !CrossesSurface(&walk, corners);
+    if (isInside && walk.isInBorder) {
+        if (walk.isSomewhereAllowed) {
+            FindCrossings(&walk);
+        } else {
+            walk.outside = corners[0];
+        }
+        isInside = walk.isSomewhereAllowed && !walk.crosses;
     }
     *outside = walk.outside;
     return isInside;

@@ -406,7 +406,7 @@ static pvtVec3 Tilt(double x, double y, double z)
     return (pvtVec3){0.96 * x - 0.28 * y, 0.28 * x + 0.96 * y, z};
 }
 
-static void MakeTilted(pvtContext* context, Tilted* tilted)
+static void MakeTilted(pvtContext* context, int resolution, Tilted* tilted)
 {
     *tilted = (Tilted){0};
     MakeBoxMesh(context, (pvtVec3){-10, -10, -10}, (pvtVec3){10, 10, 10}, &tilted->mesh);
@@ -415,7 +415,7 @@ static void MakeTilted(pvtContext* context, Tilted* tilted)
         tilted->mesh.positions[i] = Tilt(p.x, p.y, p.z);
     }
     pvtVoxelizeOptions options = pvtDefaultVoxelizeOptions();
-    options.resolution = 24;
+    options.resolution = resolution;
     const pvtSolidOptions solid = pvtDefaultSolidOptions();
     pvtBitGrid surface;
     CHECK_OK(context, pvtVoxelizeMesh(context, &options, &tilted->mesh, &surface));
@@ -461,7 +461,7 @@ static void triangles_may_come_up_to_the_surface_and_no_farther(void** state)
     (void)state;
     pvtContext* context = CreateTestContext(2);
     Tilted tilted;
-    MakeTilted(context, &tilted);
+    MakeTilted(context, 24, &tilted);
     uint64_t outside = 0;
     // A corner just below a face, and one just above it; voxels are about 1 in size, cells 1/4.
     assert_true(
@@ -482,12 +482,29 @@ static void triangles_may_come_up_to_the_surface_and_no_farther(void** state)
     DestroyTestContext(context);
 }
 
+static void large_triangles_may_come_up_to_the_surface_as_well(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Tilted tilted;
+    MakeTilted(context, 192, &tilted);
+    // Most of a face, in more border voxels than are kept in mind at a time.
+    const pvtVec3 a = {9.99, -9.9, -9.9}, b = {9.99, 9.9, -9.9};
+    uint64_t outside = 0;
+    assert_true(IsInside(context, &tilted, (pvtVec3[3]){a, b, {9.85, 0.0, 9.9}}, &outside));
+    assert_true(outside == 0);
+    assert_false(IsInside(context, &tilted, (pvtVec3[3]){a, b, {10.01, 0.0, 9.9}}, &outside));
+    assert_true(outside > 0);
+    FreeTilted(context, &tilted);
+    DestroyTestContext(context);
+}
+
 static void what_the_test_finds_inside_passes_the_check(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
     Tilted tilted;
-    MakeTilted(context, &tilted);
+    MakeTilted(context, 24, &tilted);
     pvtRandom random = pvtMakeRandom(21, 2);
     int inside = 0, near = 0;
     for (int round = 0; round < 4000; ++round) {
@@ -525,7 +542,7 @@ static void BuildTilted(pvtContext* context, int budget, pvtOccluder* occluder,
                         pvtBuildStats* stats)
 {
     Tilted tilted;
-    MakeTilted(context, &tilted);
+    MakeTilted(context, 24, &tilted);
     pvtBuildOptions options = pvtDefaultBuildOptions();
     options.budget = budget;
     options.resolution = 32;
@@ -592,6 +609,7 @@ int main(void)
         cmocka_unit_test(no_triangle_grows_from_fixed_corners),
         cmocka_unit_test(triangles_cross_where_they_pass_through_each_other),
         cmocka_unit_test(triangles_may_come_up_to_the_surface_and_no_farther),
+        cmocka_unit_test(large_triangles_may_come_up_to_the_surface_as_well),
         cmocka_unit_test(what_the_test_finds_inside_passes_the_check),
         cmocka_unit_test(an_ascent_keeps_to_its_budget_and_hides_nearly_all_of_a_cube),
         cmocka_unit_test(threads_do_not_change_an_ascent),
