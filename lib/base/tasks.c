@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: MIT
-// A small pool: one loop at a time, cut into pieces that the workers fetch from a counter.
+// A small pool: one loop at a time, cut into pieces that the workers fetch from a counter. Loops
+// often follow each other within microseconds, so that who has to wait looks for a while whether it
+// still has to before it sleeps: to be woken takes longer than most loops.
 #include "tasks.h"
 
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
+enum { LOOKS = 4000 }; // before sleep: a tenth of a millisecond or so
+
 struct pvtTaskPool {
     pthread_t threads[PVT_MAX_THREADS];
     int workerCount; // the caller included
+    int looks;       // 0 when there are more workers than cores
     pthread_mutex_t lock;
     pthread_cond_t started, finished;
-    uint64_t generation; // counts loops, so that a worker knows a new one
-    int busy;            // workers that have not finished this generation
-    bool stopping;
+    atomic_uint_fast64_t generation; // counts loops, so that a worker knows a new one; and the end
+    atomic_int busy;                 // workers that have not finished this generation
+    bool stopping;                   // as of this generation
     pvtTaskFcn* task;
     void* taskData;
     size_t count, piece;
@@ -48,30 +53,66 @@ static void RunPieces(pvtTaskPool* pool, int worker)
     }
 }
 
+static void Pause(void)
+{
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+}
+
+// Returns the next generation.
+static uint64_t AwaitStart(pvtTaskPool* pool, uint64_t seen)
+{
+    for (int i = 0; i < pool->looks && atomic_load(&pool->generation) == seen; ++i) {
+        Pause();
+    }
+    if (atomic_load(&pool->generation) == seen) {
+        pthread_mutex_lock(&pool->lock);
+        while (atomic_load(&pool->generation) == seen) {
+            pthread_cond_wait(&pool->started, &pool->lock);
+        }
+        pthread_mutex_unlock(&pool->lock);
+    }
+    return seen + 1;
+}
+
+static void AwaitFinish(pvtTaskPool* pool)
+{
+    for (int i = 0; i < pool->looks && atomic_load(&pool->busy) > 0; ++i) {
+        Pause();
+    }
+    if (atomic_load(&pool->busy) > 0) {
+        pthread_mutex_lock(&pool->lock);
+        while (atomic_load(&pool->busy) > 0) {
+            pthread_cond_wait(&pool->finished, &pool->lock);
+        }
+        pthread_mutex_unlock(&pool->lock);
+    }
+}
+
+// Who sleeps holds the lock until it does, and so hears of it.
+static void StartGeneration(pvtTaskPool* pool)
+{
+    pthread_mutex_lock(&pool->lock);
+    atomic_fetch_add(&pool->generation, 1);
+    pthread_cond_broadcast(&pool->started);
+    pthread_mutex_unlock(&pool->lock);
+}
+
 static void* WorkerMain(void* argument)
 {
     WorkerStart* start = argument;
     pvtTaskPool* pool = start->pool;
     const int worker = start->worker;
     free(start);
-    uint64_t seen = 0;
-    pthread_mutex_lock(&pool->lock);
-    for (;;) {
-        while (!pool->stopping && pool->generation == seen) {
-            pthread_cond_wait(&pool->started, &pool->lock);
-        }
-        if (pool->stopping) {
-            break;
-        }
-        seen = pool->generation;
-        pthread_mutex_unlock(&pool->lock);
+    for (uint64_t seen = AwaitStart(pool, 0); !pool->stopping; seen = AwaitStart(pool, seen)) {
         RunPieces(pool, worker);
-        pthread_mutex_lock(&pool->lock);
-        if (--pool->busy == 0) {
+        if (atomic_fetch_sub(&pool->busy, 1) == 1) {
+            pthread_mutex_lock(&pool->lock);
             pthread_cond_signal(&pool->finished);
+            pthread_mutex_unlock(&pool->lock);
         }
     }
-    pthread_mutex_unlock(&pool->lock);
     return NULL;
 }
 
@@ -98,6 +139,7 @@ pvtTaskPool* pvtCreateTaskPool(int threadCount)
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->started, NULL);
     pthread_cond_init(&pool->finished, NULL);
+    pool->looks = threadCount <= pvtGetCoreCount() ? LOOKS : 0;
     pool->workerCount = 1;
     while (pool->workerCount < threadCount && StartWorker(pool, pool->workerCount)) {
         ++pool->workerCount;
@@ -110,10 +152,8 @@ void pvtDestroyTaskPool(pvtTaskPool* pool)
     if (pool == NULL) {
         return;
     }
-    pthread_mutex_lock(&pool->lock);
     pool->stopping = true;
-    pthread_cond_broadcast(&pool->started);
-    pthread_mutex_unlock(&pool->lock);
+    StartGeneration(pool);
     for (int worker = 1; worker < pool->workerCount; ++worker) {
         pthread_join(pool->threads[worker], NULL);
     }
@@ -128,22 +168,13 @@ void pvtTaskPool_Run(pvtTaskPool* pool, pvtTaskFcn* task, size_t count, size_t m
 {
     // Eight pieces a worker even out uneven work; fewer when they would fall below minRange.
     const size_t even = count / ((size_t)pool->workerCount * 8) + 1;
-    pthread_mutex_lock(&pool->lock);
     pool->task = task;
     pool->taskData = taskData;
     pool->count = count;
     pool->piece = even > minRange ? even : minRange > 0 ? minRange : 1;
     atomic_store(&pool->next, 0);
-    pool->busy = pool->workerCount - 1;
-    ++pool->generation;
-    pthread_cond_broadcast(&pool->started);
-    pthread_mutex_unlock(&pool->lock);
-
+    atomic_store(&pool->busy, pool->workerCount - 1);
+    StartGeneration(pool);
     RunPieces(pool, 0);
-
-    pthread_mutex_lock(&pool->lock);
-    while (pool->busy > 0) {
-        pthread_cond_wait(&pool->finished, &pool->lock);
-    }
-    pthread_mutex_unlock(&pool->lock);
+    AwaitFinish(pool);
 }

@@ -107,15 +107,20 @@ static uint64_t GetGroup(int group, int side)
     return corners[side] << (side * (x + PVT_CELLS * (y + PVT_CELLS * z)));
 }
 
+// Of the cells' coordinates, each the sum of a one and a two.
 static pvtVec3 GetMiddle(uint64_t cells)
 {
-    pvtVec3 sum = {0};
-    for (uint64_t bits = cells; bits != 0; bits &= bits - 1) {
-        const int cell = __builtin_ctzll(bits);
-        const int x = cell % 4, y = cell / 4 % 4, z = cell / 16;
-        sum = pvtAdd(sum, (pvtVec3){x + 0.5, y + 0.5, z + 0.5});
+    static const uint64_t ones[3] = {UINT64_C(0xAAAAAAAAAAAAAAAA), UINT64_C(0xF0F0F0F0F0F0F0F0),
+                                     UINT64_C(0xFFFF0000FFFF0000)};
+    static const uint64_t twos[3] = {UINT64_C(0xCCCCCCCCCCCCCCCC), UINT64_C(0xFF00FF00FF00FF00),
+                                     UINT64_C(0xFFFFFFFF00000000)};
+    const double count = pvtCountBits(cells);
+    double sums[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        sums[axis] = pvtCountBits(cells & ones[axis]) + 2.0 * pvtCountBits(cells & twos[axis]);
     }
-    return pvtScale(sum, 1.0 / pvtCountBits(cells));
+    const pvtVec3 sum = {sums[0] + 0.5 * count, sums[1] + 0.5 * count, sums[2] + 0.5 * count};
+    return pvtScale(sum, 1.0 / count);
 }
 
 // As many points along a voxel's side as it needs: one in the middle of each group of cells that

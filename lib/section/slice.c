@@ -12,6 +12,7 @@
 // is how many of the columns' fractions do. The masks for each of the ways are made when they are
 // first met.
 #include "base/bits.h"
+#include "base/vectors.h"
 #include "voxel/cell_grid.h"
 
 #include <assert.h>
@@ -272,18 +273,6 @@ void pvtSliceGrid(const pvtSliceVolume* volume, const pvtPlane* plane, pvtSliceR
     }
 }
 
-// A plane over a volume with cells. Heights count in units of 2^-23 voxel, as for slices of four
-// cells a voxel.
-typedef struct CellSlicing {
-    const pvtSliceVolume* volume;
-    pvtAxis axis;
-    int64_t first;       // height below which the patch over cell (0, 0) does not reach
-    int64_t span;        // to its highest
-    int64_t least, most; // heights of the lowest and the highest end of 16 patches, from the first
-    int64_t stepU, stepV;
-    Slicing whole, partly; // of the voxels, one cell each
-} CellSlicing;
-
 enum {
     HEIGHT_BITS = PVT_PLANE_BITS + 3,
     CELL_HEIGHT_BITS = HEIGHT_BITS - 2,
@@ -291,6 +280,20 @@ enum {
     // A patch over a voxel rises by two at most.
     MAX_VOXELS = 4
 };
+
+// A plane over a volume with cells. Heights count in units of 2^-23 voxel, as for slices of four
+// cells a voxel.
+typedef struct CellSlicing {
+    const pvtSliceVolume* volume;
+    pvtAxis axis;
+    int64_t first;      // height below which the patch over cell (0, 0) does not reach
+    int span;           // from a patch's lowest to its highest
+    int64_t least;      // height of the lowest of 16 patches, from the first
+    int reach;          // from there to the highest
+    int rises[PATCHES]; // of the patches' lowest, from the lowest of all
+    int64_t stepU, stepV;
+    Slicing whole, partly; // of the voxels, one cell each
+} CellSlicing;
 
 // All cells of a voxel of the column (u, v), at position n along the axis.
 static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t n)
@@ -314,30 +317,40 @@ static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t
 }
 
 // Which of the 16 patches over a voxel's column (u, v) touch set cells only: bit i + 4 j.
-static uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
+static inline uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
 {
-    const int64_t corner = slicing->first + PVT_CELLS * (slicing->stepU * u + slicing->stepV * v);
-    const int64_t lowest = corner + slicing->least;
+    const int64_t lowest =
+        slicing->first + PVT_CELLS * (slicing->stepU * u + slicing->stepV * v) + slicing->least;
     const int64_t voxel = lowest >> HEIGHT_BITS;
-    const int64_t last = (corner + slicing->most) >> HEIGHT_BITS;
+    const int64_t start = lowest - voxel * (INT64_C(1) << HEIGHT_BITS);
+    const int last = (int)((start + slicing->reach) >> HEIGHT_BITS);
     uint64_t cells[MAX_VOXELS] = {0};
     uint64_t any = 0;
-    for (int64_t n = voxel; n <= last; ++n) {
-        cells[n - voxel] = GetColumnCells(slicing, u, v, n);
-        any |= cells[n - voxel];
+    for (int n = 0; n <= last; ++n) {
+        cells[n] = GetColumnCells(slicing, u, v, voxel + n);
+        any |= cells[n];
     }
-    uint64_t patches = 0;
-    for (int i = 0; i < PATCHES && any != 0; ++i) {
-        const int64_t at = corner + slicing->stepU * (i % 4) + slicing->stepV * (i / 4);
-        const int low = (int)((at >> CELL_HEIGHT_BITS) - PVT_CELLS * voxel);
-        const int high = (int)(((at + slicing->span) >> CELL_HEIGHT_BITS) - PVT_CELLS * voxel);
-        uint64_t all = 1;
-        for (int level = low; level <= high; ++level) {
-            all &= cells[level / PVT_CELLS] >> (PATCHES * (level % PVT_CELLS) + i);
+    if (any == 0) {
+        return 0;
+    }
+    int low[PATCHES], high[PATCHES], clear[PATCHES] = {0};
+    for (int i = 0; i < PATCHES; ++i) {
+        low[i] = ((int)start + slicing->rises[i]) >> CELL_HEIGHT_BITS;
+        high[i] = ((int)start + slicing->rises[i] + slicing->span) >> CELL_HEIGHT_BITS;
+    }
+    const int top = (int)((start + slicing->reach) >> CELL_HEIGHT_BITS);
+    for (int level = (int)(start >> CELL_HEIGHT_BITS); level <= top; ++level) {
+        const int row = (int)(~cells[level / PVT_CELLS] >> (PATCHES * (level % PVT_CELLS)) &
+                              ((1 << PATCHES) - 1));
+        for (int i = 0; i < PATCHES; ++i) {
+            clear[i] |= low[i] <= level && level <= high[i] ? row & 1 << i : 0;
         }
-        patches |= (all & 1) << i;
     }
-    return patches;
+    int all = (1 << PATCHES) - 1;
+    for (int i = 0; i < PATCHES; ++i) {
+        all &= ~clear[i];
+    }
+    return (uint64_t)all;
 }
 
 static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plane,
@@ -349,7 +362,7 @@ static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plan
     CellSlicing slicing = {.volume = volume,
                            .axis = plane->axis,
                            .first = middle - u - v - 1,
-                           .span = 2 * (u + v) + 1,
+                           .span = (int)(2 * (u + v) + 1),
                            .stepU = 2 * (int64_t)plane->slopeU,
                            .stepV = 2 * (int64_t)plane->slopeV,
                            .whole = {.columns = &volume->axes[plane->axis],
@@ -360,7 +373,12 @@ static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plan
                                      .cellsPerVoxel = 1}};
     const int64_t farU = 3 * slicing.stepU, farV = 3 * slicing.stepV;
     slicing.least = (farU < 0 ? farU : 0) + (farV < 0 ? farV : 0);
-    slicing.most = (farU > 0 ? farU : 0) + (farV > 0 ? farV : 0) + slicing.span;
+    for (int i = 0; i < PATCHES; ++i) {
+        slicing.rises[i] = (int)(slicing.stepU * (i % 4) + slicing.stepV * (i / 4) - slicing.least);
+        slicing.reach = slicing.rises[i] + slicing.span > slicing.reach
+                            ? slicing.rises[i] + slicing.span
+                            : slicing.reach;
+    }
     PlaceSamples(plane, PVT_SLICE_COVERED, &slicing.whole);
     slicing.partly = slicing.whole;
     slicing.partly.columns = &volume->partly[plane->axis];
@@ -384,7 +402,8 @@ static void FindColumns(const CellSlicing* slicing, int v, size_t w, uint64_t* c
     *others &= ~*covered;
 }
 
-static void SliceCellWord(const CellSlicing* slicing, int v, size_t w, pvtBitmap* slice)
+PVT_VECTOR_CLONES static void SliceCellWord(const CellSlicing* slicing, int v, size_t w,
+                                            pvtBitmap* slice)
 {
     const size_t perRow = slice->wordsPerRow;
     uint64_t* rows = slice->words + (size_t)v * PVT_CELLS * perRow;
@@ -406,7 +425,8 @@ static void SliceCellWord(const CellSlicing* slicing, int v, size_t w, pvtBitmap
 }
 
 // At one cell a voxel all patches over it must be covered.
-static void SliceVoxelWord(const CellSlicing* slicing, int v, size_t w, pvtBitmap* slice)
+PVT_VECTOR_CLONES static void SliceVoxelWord(const CellSlicing* slicing, int v, size_t w,
+                                             pvtBitmap* slice)
 {
     uint64_t* word = &slice->words[(size_t)v * slice->wordsPerRow + w];
     uint64_t others;

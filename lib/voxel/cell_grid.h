@@ -10,15 +10,19 @@
 /// All cells clear. Takes over `voxels`, whose frame it has; both are empty on failure.
 pvtStatus pvtCreateCellGrid(pvtContext* context, pvtBitGrid* voxels, pvtCellGrid* grid);
 
-/// Place of a voxel's word in `cells`; PVT_NO_CELLS if it has none.
-static inline size_t pvtCellGrid_Find(const pvtCellGrid* grid, int x, int y, int z)
+/// So many voxels with a word come before this one.
+static inline size_t pvtCellGrid_Rank(const pvtCellGrid* grid, int x, int y, int z)
 {
     const size_t word =
         pvtGetRowIndex(&grid->voxels, y, z) * grid->voxels.wordsPerRow + (size_t)x / 64;
-    const uint64_t bits = grid->voxels.words[word];
-    const uint64_t bit = UINT64_C(1) << (x % 64);
-    return (bits & bit) == 0 ? PVT_NO_CELLS
-                             : grid->ranks[word] + (size_t)pvtCountBits(bits & (bit - 1));
+    const uint64_t before = (UINT64_C(1) << (x % 64)) - 1;
+    return grid->ranks[word] + (size_t)pvtCountBits(grid->voxels.words[word] & before);
+}
+
+/// Place of a voxel's word in `cells`; PVT_NO_CELLS if it has none.
+static inline size_t pvtCellGrid_Find(const pvtCellGrid* grid, int x, int y, int z)
+{
+    return pvtBitGrid_Get(&grid->voxels, x, y, z) ? pvtCellGrid_Rank(grid, x, y, z) : PVT_NO_CELLS;
 }
 
 /// Marks the cells that a triangle touches, as pvtVoxelizeMesh does with voxels.

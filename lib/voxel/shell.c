@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-enum { SIDES = 6, CANCEL_INTERVAL = 1024 };
+enum { SIDES = 6, CANCEL_INTERVAL = 1024, BLOCK = 256 };
 
 // What lies beyond a side of a touched voxel when it is not touched.
 #define OUTSIDE UINT32_MAX
@@ -36,11 +36,24 @@ typedef struct Shell {
     Waves* waves;                  // cells that the waves have taken
     Waves* next;                   // and those that they take in this step
     uint8_t* woken;                // whether a voxel's cells may change in the next step
+    uint8_t* wokenBlocks;          // whether any of BLOCK voxels is woken
     uint32_t* list;                // those that may in this step
     size_t listCount;
     uint64_t* allowed; // the outcome
     uint8_t* isOpen;   // whether a voxel is beside one in which the waves meet
 } Shell;
+
+// Several workers may mark the same.
+static void Mark(uint8_t* flag)
+{
+    __atomic_store_n(flag, 1, __ATOMIC_RELAXED);
+}
+
+static void Wake(const Shell* shell, size_t voxel)
+{
+    Mark(&shell->woken[voxel]);
+    Mark(&shell->wokenBlocks[voxel / BLOCK]);
+}
 
 static uint32_t FindNeighbour(const Shell* shell, int x, int y, int z)
 {
@@ -72,7 +85,7 @@ static void ListLayer(Shell* shell, int z)
                 shell->places[index][0] = (uint16_t)x;
                 shell->places[index][1] = (uint16_t)y;
                 shell->places[index][2] = (uint16_t)z;
-                shell->woken[index] = 1;
+                Wake(shell, index);
             }
         }
     }
@@ -164,11 +177,6 @@ static void StepVoxels(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
-static void Wake(const Shell* shell, size_t voxel)
-{
-    __atomic_store_n(&shell->woken[voxel], 1, __ATOMIC_RELAXED);
-}
-
 static void TakeCells(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
@@ -190,24 +198,27 @@ static void TakeCells(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
+static void ListWokenFrom(Shell* shell, size_t begin, size_t end)
+{
+    for (size_t i = begin; i < end; ++i) {
+        if (shell->woken[i] != 0) {
+            shell->woken[i] = 0;
+            shell->list[shell->listCount++] = (uint32_t)i;
+        }
+    }
+}
+
 // Those that were woken. Mostly they are few, and far from each other.
 static void ListWoken(Shell* shell)
 {
     const size_t count = shell->touched->count;
     shell->listCount = 0;
-    for (size_t i = 0; i < count;) {
-        uint64_t eight = 1;
-        if (i + 8 <= count) {
-            memcpy(&eight, shell->woken + i, sizeof eight);
+    for (size_t block = 0; block * BLOCK < count; ++block) {
+        if (shell->wokenBlocks[block] != 0) {
+            shell->wokenBlocks[block] = 0;
+            const size_t end = (block + 1) * BLOCK;
+            ListWokenFrom(shell, block * BLOCK, end < count ? end : count);
         }
-        const size_t end = eight == 0 ? i : i + 8 <= count ? i + 8 : count;
-        for (size_t k = i; k < end; ++k) {
-            if (shell->woken[k] != 0) {
-                shell->woken[k] = 0;
-                shell->list[shell->listCount++] = (uint32_t)k;
-            }
-        }
-        i += 8;
     }
 }
 
@@ -231,6 +242,30 @@ static uint64_t Dilate(const uint64_t voxels[3], int axis)
            MoveWithin(voxels[1], above) | SpreadAcross(voxels[2], above);
 }
 
+// Of the voxels x − 1, x and x + 1 of a row, which cells are outside. Of voxels that are next to
+// each other, the places are as well.
+static void GetOutsideOfThree(const Shell* shell, int x, int y, int z, uint64_t outside[3])
+{
+    const int* size = shell->touched->voxels.frame.size;
+    if (y < 0 || z < 0 || y >= size[1] || z >= size[2]) {
+        outside[0] = outside[1] = outside[2] = ~UINT64_C(0);
+        return;
+    }
+    const uint64_t* touched = pvtBitGrid_GetRow(&shell->touched->voxels, y, z);
+    const uint64_t* inside = pvtBitGrid_GetRow(&shell->solid->inside, y, z);
+    size_t place = pvtCellGrid_Rank(shell->touched, x > 0 ? x - 1 : 0, y, z);
+    for (int i = 0; i < 3; ++i) {
+        const int at = x + i - 1;
+        if (at < 0 || at >= size[0]) {
+            outside[i] = ~UINT64_C(0);
+        } else if (pvtGetBit(touched, (size_t)at)) {
+            outside[i] = shell->waves[place++].outside;
+        } else {
+            outside[i] = pvtGetBit(inside, (size_t)at) ? 0 : ~UINT64_C(0);
+        }
+    }
+}
+
 // The voxel's cells that are outside or have an outside cell among their 26 neighbours. A plane
 // touches no cell whose neighbours all lie on its inner side or on it.
 static uint64_t FindCellsNearOutside(const Shell* shell, const uint16_t place[3])
@@ -240,11 +275,7 @@ static uint64_t FindCellsNearOutside(const Shell* shell, const uint16_t place[3]
         uint64_t rows[3];
         for (int y = 0; y < 3; ++y) {
             uint64_t cells[3];
-            for (int x = 0; x < 3; ++x) {
-                const uint32_t voxel =
-                    FindNeighbour(shell, place[0] + x - 1, place[1] + y - 1, place[2] + z - 1);
-                cells[x] = GetWaves(shell, voxel).outside;
-            }
+            GetOutsideOfThree(shell, place[0], place[1] + y - 1, place[2] + z - 1, cells);
             rows[y] = Dilate(cells, 0);
         }
         layers[z] = Dilate(rows, 1);
@@ -281,9 +312,11 @@ static bool DoWavesMeet(const Shell* shell, size_t voxel)
     return ((outside & near) | (within & far)) != 0;
 }
 
-static void FindOpenings(const Shell* shell)
+static void FindOpenings(size_t begin, size_t end, int worker, void* taskData)
 {
-    for (size_t i = 0; i < shell->touched->count; ++i) {
+    (void)worker;
+    const Shell* shell = taskData;
+    for (size_t i = begin; i < end; ++i) {
         if (!DoWavesMeet(shell, i)) {
             continue;
         }
@@ -292,7 +325,7 @@ static void FindOpenings(const Shell* shell)
             const uint32_t beside = FindNeighbour(shell, place[0] + n % 3 - 1,
                                                   place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
             if (beside < INSIDE) {
-                shell->isOpen[beside] = 1;
+                Mark(&shell->isOpen[beside]);
             }
         }
     }
@@ -307,18 +340,19 @@ static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
     shell->next = pvtAllocate(context, count, sizeof *shell->next);
     shell->list = pvtAllocate(context, count, sizeof *shell->list);
     shell->woken = pvtAllocate(context, count, sizeof *shell->woken);
+    shell->wokenBlocks = pvtAllocate(context, count / BLOCK + 1, sizeof *shell->wokenBlocks);
     shell->allowed = pvtAllocate(context, count, sizeof *shell->allowed);
     shell->isOpen = pvtAllocate(context, count, sizeof *shell->isOpen);
     if (shell->places == NULL || shell->neighbours == NULL || shell->waves == NULL ||
         shell->next == NULL || shell->list == NULL || shell->woken == NULL ||
-        shell->allowed == NULL || shell->isOpen == NULL) {
+        shell->wokenBlocks == NULL || shell->allowed == NULL || shell->isOpen == NULL) {
         return pvtContext_GetStatus(context);
     }
     pvtParallelFor(context, ListLayers, (size_t)shell->touched->voxels.frame.size[2], 4, shell);
     const pvtStatus status = RunWaves(context, shell);
     if (status == PVT_OK) {
         pvtParallelFor(context, JudgeVoxels, count, CANCEL_INTERVAL, shell);
-        FindOpenings(shell);
+        pvtParallelFor(context, FindOpenings, count, CANCEL_INTERVAL, shell);
     }
     return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
 }
@@ -395,6 +429,7 @@ static void FreeShell(pvtContext* context, Shell* shell)
     pvtRelease(context, shell->next);
     pvtRelease(context, shell->list);
     pvtRelease(context, shell->woken);
+    pvtRelease(context, shell->wokenBlocks);
     pvtRelease(context, shell->allowed);
     pvtRelease(context, shell->isOpen);
 }

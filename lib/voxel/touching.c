@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A triangle is listed in the voxels of its box that its plane passes: row by row, the plane bounds
-// where along x. That is a few voxels too many beside its edges, and none too few.
+// where along x. That is a few voxels too many beside its edges, and none too few. Workers share
+// the layers of voxels, not the triangles, so that lists need no locks and are in order.
 #include "cell_grid.h"
 
 #include "base/context.h"
@@ -8,7 +9,7 @@
 
 #include <math.h>
 
-enum { CANCEL_INTERVAL = 4096 };
+enum { CANCEL_INTERVAL = 4096, PARTS = 4 };
 
 static const double MARGIN = 1e-6; // [vx]
 
@@ -20,7 +21,9 @@ void pvtTouching_Free(pvtContext* context, pvtTouching* touching)
 }
 
 typedef struct Lister {
+    pvtContext* context;
     const pvtCellGrid* cells;
+    const pvtMesh* mesh;
     uint32_t* counts;    // of each voxel; in the second pass where its next triangle goes
     uint32_t* triangles; // null in the first pass
 } Lister;
@@ -46,63 +49,97 @@ static void AddRow(const Lister* lister, int y, int z, const int range[2], uint3
     }
 }
 
-// The part of a row from range[0] to range[1] in which the plane n · p = d passes within its
-// voxels.
-static bool CutRow(pvtVec3 n, double d, int y, int z, int range[2])
+// The plane n · p = d, for rows along x.
+typedef struct RowPlane {
+    pvtVec3 n;
+    double d;
+    double scale;  // 1 / n.x
+    double margin; // [vx] along x
+} RowPlane;
+
+static double Least(double a, double b)
 {
-    const double low = d - fmax(n.y * y, n.y * (y + 1)) - fmax(n.z * z, n.z * (z + 1));
-    const double high = d - fmin(n.y * y, n.y * (y + 1)) - fmin(n.z * z, n.z * (z + 1));
+    return a < b ? a : b;
+}
+
+static double Most(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+// The part of a row from range[0] to range[1] in which the plane passes within its voxels.
+static bool CutRow(const RowPlane* plane, int y, int z, int range[2])
+{
+    const pvtVec3 n = plane->n;
+    const double rest = plane->d - n.y * y - n.z * z;
+    const double low = rest - Most(n.y, 0.0) - Most(n.z, 0.0);
+    const double high = rest - Least(n.y, 0.0) - Least(n.z, 0.0);
     if (fabs(n.x) < 1e-9) {
         return low <= MARGIN && high >= -MARGIN;
     }
-    const double a = fmin(low / n.x, high / n.x) - MARGIN / fabs(n.x);
-    const double b = fmax(low / n.x, high / n.x) + MARGIN / fabs(n.x);
+    const double from = low * plane->scale, to = high * plane->scale;
+    const double a = Least(from, to) - plane->margin;
+    const double b = Most(from, to) + plane->margin;
     if (a > range[1] + 1.0 || b < range[0]) {
         return false;
     }
-    range[0] = a > range[0] ? (int)floor(a) : range[0];
-    range[1] = b < range[1] ? (int)floor(b) : range[1];
+    // Not below 0: cutting the fraction off rounds down.
+    range[0] = a > range[0] ? (int)a : range[0];
+    range[1] = b < range[1] ? (int)b : range[1];
     return range[0] <= range[1];
 }
 
-static void AddTriangle(const Lister* lister, const pvtMesh* mesh, size_t triangle)
+// In the layers from `first` to `last`.
+static void AddTriangle(const Lister* lister, size_t triangle, int first, int last)
 {
     const pvtGridFrame* frame = &lister->cells->voxels.frame;
     pvtVec3 corners[3];
     int low[3], high[3];
-    pvtGetGridTriangle(frame, mesh, triangle, corners);
-    for (int axis = 0; axis < 3; ++axis) {
+    pvtGetGridTriangle(frame, lister->mesh, triangle, corners);
+    for (int axis = 2; axis >= 0; --axis) {
         const double a = pvtGetAxis(corners[0], axis), b = pvtGetAxis(corners[1], axis),
                      c = pvtGetAxis(corners[2], axis);
-        const int last = frame->size[axis] - 1;
-        const int from = (int)floor(fmin(a, fmin(b, c)) - MARGIN);
-        const int to = (int)floor(fmax(a, fmax(b, c)) + MARGIN);
-        low[axis] = from > 0 ? from : 0;
-        high[axis] = to < last ? to : last;
+        const int least = axis == 2 ? first : 0;
+        const int most = axis == 2 ? last : frame->size[axis] - 1;
+        const double from = Least(a, Least(b, c)) - MARGIN;
+        const double to = Most(a, Most(b, c)) + MARGIN;
+        if (to < least || from >= most + 1) {
+            return;
+        }
+        low[axis] = from > least ? (int)from : least;
+        high[axis] = to < most ? (int)to : most;
     }
     const pvtVec3 n =
         pvtNormalize(pvtCross(pvtSub(corners[1], corners[0]), pvtSub(corners[2], corners[0])));
-    const double d = pvtDot(n, corners[0]);
+    const RowPlane plane = {n, pvtDot(n, corners[0]), 1.0 / n.x, MARGIN / fabs(n.x)};
     for (int z = low[2]; z <= high[2]; ++z) {
         for (int y = low[1]; y <= high[1]; ++y) {
             int range[2] = {low[0], high[0]};
             // A triangle without area has no plane: all of its box then.
-            if (range[0] <= range[1] && CutRow(n, d, y, z, range)) {
+            if (CutRow(&plane, y, z, range)) {
                 AddRow(lister, y, z, range, (uint32_t)triangle);
             }
         }
     }
 }
 
-static pvtStatus AddTriangles(pvtContext* context, const Lister* lister, const pvtMesh* mesh)
+static void AddToLayers(size_t begin, size_t end, int worker, void* taskData)
 {
-    for (size_t t = 0; t < mesh->triangleCount; ++t) {
-        if (t % CANCEL_INTERVAL == 0 && pvtIsCancelled(context)) {
-            return pvtFailCancelled(context);
+    (void)worker;
+    const Lister* lister = taskData;
+    for (size_t t = 0; t < lister->mesh->triangleCount; ++t) {
+        if (t % CANCEL_INTERVAL == 0 && pvtIsCancelled(lister->context)) {
+            return;
         }
-        AddTriangle(lister, mesh, t);
+        AddTriangle(lister, t, (int)begin, (int)end - 1);
     }
-    return PVT_OK;
+}
+
+static pvtStatus AddTriangles(pvtContext* context, Lister* lister)
+{
+    const size_t layers = (size_t)lister->cells->voxels.frame.size[2];
+    pvtParallelFor(context, AddToLayers, layers, layers / PARTS + 1, lister);
+    return pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
 }
 
 static pvtStatus FillLists(pvtContext* context, Lister* lister, pvtTouching* touching)
@@ -124,19 +161,19 @@ static pvtStatus FillLists(pvtContext* context, Lister* lister, pvtTouching* tou
         return pvtContext_GetStatus(context);
     }
     lister->triangles = touching->triangles;
-    return AddTriangles(context, lister, touching->mesh);
+    return AddTriangles(context, lister);
 }
 
 pvtStatus pvtListTouching(pvtContext* context, const pvtMesh* mesh, const pvtCellGrid* cells,
                           pvtTouching* touching)
 {
     *touching = (pvtTouching){.mesh = mesh};
-    Lister lister = {.cells = cells};
+    Lister lister = {.context = context, .cells = cells, .mesh = mesh};
     lister.counts = pvtAllocate(context, cells->count, sizeof *lister.counts);
     touching->starts = pvtAllocate(context, cells->count + 1, sizeof *touching->starts);
     pvtStatus status = lister.counts == NULL || touching->starts == NULL
                            ? pvtContext_GetStatus(context)
-                           : AddTriangles(context, &lister, mesh);
+                           : AddTriangles(context, &lister);
     if (status == PVT_OK) {
         status = FillLists(context, &lister, touching);
     }

@@ -96,10 +96,11 @@ static uint64_t GetCellBits(int x, int y, int z, int firstX, int lastX)
 
 static void MarkCells(const pvtCellGrid* cells, int y, int z, int firstX, int lastX)
 {
+    const uint64_t* voxels = pvtBitGrid_GetRow(&cells->voxels, y / PVT_CELLS, z / PVT_CELLS);
+    size_t place = pvtCellGrid_Rank(cells, firstX / PVT_CELLS, y / PVT_CELLS, z / PVT_CELLS);
     for (int x = firstX / PVT_CELLS; x <= lastX / PVT_CELLS; ++x) {
-        const size_t index = pvtCellGrid_Find(cells, x, y / PVT_CELLS, z / PVT_CELLS);
-        if (index != PVT_NO_CELLS) {
-            MarkBits(&cells->cells[index], GetCellBits(x, y, z, firstX, lastX));
+        if (pvtGetBit(voxels, (size_t)x)) {
+            MarkBits(&cells->cells[place++], GetCellBits(x, y, z, firstX, lastX));
         }
     }
 }
