@@ -83,7 +83,7 @@ static void MoveCorners(pvtAscent* ascent)
 void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
 {
     const pvtPullOptions pull = {.first = ascent->next,
-                                 .count = ascent->options->batch,
+                                 .count = wantsEdges ? PVT_MOST_BATCH : ascent->options->batch,
                                  .softness = ascent->softness,
                                  .inset = PVT_ASCENT_INSET,
                                  .wantsEdges = wantsEdges};

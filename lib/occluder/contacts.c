@@ -25,6 +25,7 @@ void pvtContactSet_Free(pvtContext* context, pvtContactSet* contacts)
     pvtRelease(context, contacts->counts);
     pvtRelease(context, contacts->known);
     pvtRelease(context, contacts->kinds);
+    pvtRelease(context, contacts->pushed);
     *contacts = (pvtContactSet){0};
 }
 
@@ -37,8 +38,9 @@ pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContac
     contacts->counts = pvtAllocate(context, triangles, sizeof *contacts->counts);
     contacts->known = pvtAllocate(context, points, sizeof *contacts->known);
     contacts->kinds = pvtAllocate(context, triangles, sizeof *contacts->kinds);
+    contacts->pushed = pvtAllocate(context, 3 * triangles, sizeof *contacts->pushed);
     if (contacts->contacts == NULL || contacts->counts == NULL || contacts->known == NULL ||
-        contacts->kinds == NULL) {
+        contacts->kinds == NULL || contacts->pushed == NULL) {
         pvtContactSet_Free(context, contacts);
         return pvtContext_GetStatus(context);
     }
@@ -310,17 +312,36 @@ void pvtSlideAlong(const pvtContactSet* contacts, float band, const pvtTriangleS
     }
 }
 
-void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, int sweeps,
-                   pvtTriangleSet* set)
+// Whether a corner of its triangle has moved since the contact was found inside.
+static bool HasMoved(const pvtContactSet* contacts, const pvtTriangleSet* set,
+                     const pvtContact* contact)
 {
+    const uint32_t* corners = set->triangles[contact->triangle];
+    return contacts->pushed[corners[0]] > contact->looked ||
+           contacts->pushed[corners[1]] > contact->looked ||
+           contacts->pushed[corners[2]] > contact->looked;
+}
+
+void pvtPushInside(pvtContactSet* contacts, const pvtField* field, int sweeps, pvtTriangleSet* set)
+{
+    uint32_t pushes = 0;
+    memset(contacts->pushed, 0, (size_t)set->cornerCount * sizeof *contacts->pushed);
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (int i = 0; i < contacts->count; ++i) {
-            const pvtContact* contact = &contacts->contacts[i];
+            pvtContact* contact = &contacts->contacts[i];
+            if (sweep > 0 && !HasMoved(contacts, set, contact)) {
+                continue;
+            }
             float point[3], inward[3];
             GetContactPoint(set, contact, point);
             const float depth = pvtField_GetDepthAndInward(field, point, inward);
+            contact->looked = pushes;
             if (depth < 0.0F) {
+                ++pushes;
                 MoveCorners(set, contact, inward, -depth, set->corners);
+                for (int k = 0; k < 3; ++k) {
+                    contacts->pushed[set->triangles[contact->triangle][k]] = pushes;
+                }
             }
         }
     }

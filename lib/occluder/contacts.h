@@ -17,6 +17,7 @@ typedef struct pvtContact {
     float shares[3]; ///< of the corners, of a sum of 1
     float inward[3]; ///< unit
     float depth;     ///< [vx]
+    uint32_t looked; ///< so many pushes had been made when it was last found inside
 } pvtContact;
 
 typedef struct pvtContactSet {
@@ -26,6 +27,7 @@ typedef struct pvtContactSet {
     float (*known)[3]; ///< triangle × kind of point: shares of those found the last time
     uint16_t* kinds;   ///< of each triangle: bits of the kinds that are known
     uint32_t round;    ///< how often contacts were looked for
+    uint32_t* pushed;  ///< of each corner: the last push that moved it, counted from 1
 } pvtContactSet;
 
 typedef struct pvtContactOptions {
@@ -48,8 +50,7 @@ void pvtUpdateContacts(const pvtField* field, const pvtTriangleSet* set, pvtCont
 void pvtSlideAlong(const pvtContactSet* contacts, float band, const pvtTriangleSet* set, int sweeps,
                    float (*velocities)[3]);
 /// Moves corners so that no contact is outside.
-void pvtPushInside(const pvtContactSet* contacts, const pvtField* field, int sweeps,
-                   pvtTriangleSet* set);
+void pvtPushInside(pvtContactSet* contacts, const pvtField* field, int sweeps, pvtTriangleSet* set);
 
 /// Moves the corners of a contact's triangle so that its point goes inwards by `amount` [vx].
 void pvtMoveContact(const pvtContact* contact, pvtTriangleSet* set, float amount);

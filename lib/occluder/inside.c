@@ -462,34 +462,56 @@ static uint64_t GetCellsInPlane(Walk* walk, double height)
     return walk->planeCells[bin];
 }
 
+// Whether the plane keeps out of outside cells in a voxel; `height` is its middle's above the
+// plane.
+static bool IsVoxelInside(Walk* walk, const Range* cells, const int at[3], double height)
+{
+    const pvtInsideTest* test = walk->test;
+    const pvtCellGrid* grid = test->interior.cells;
+    const size_t voxel = grid != NULL ? pvtCellGrid_Find(grid, at[0], at[1], at[2]) : PVT_NO_CELLS;
+    const uint64_t open = voxel != PVT_NO_CELLS ? test->open[voxel] : 0;
+    const uint64_t passed = GetCellsInRange(cells, at) & GetCellsInPlane(walk, height);
+    if ((passed & ~open) != 0) {
+        return false;
+    }
+    return test->interior.touching == NULL || voxel == PVT_NO_CELLS ||
+           (passed & grid->border[voxel]) == 0 || NoteVoxel(walk, voxel);
+}
+
+// The voxels of a row whose middles are so near to the plane that it may pass them; `start` is the
+// height of the first of all.
+static void FindPassed(const Walk* walk, double start, int* first, int* last)
+{
+    const double n = walk->normal.x, reach = walk->reach + 2.0 * SLACK;
+    if (fabs(n) < 1e-3) {
+        *last = fabs(start + n * *first) > reach + 1.0 ? *first - 1 : *last;
+        return;
+    }
+    const double a = (-reach - start) / n, b = (reach - start) / n;
+    const double low = a < b ? a : b, high = a < b ? b : a;
+    *first = low > *first ? (low < *last ? RoundUp(low) : *last + 1) : *first;
+    *last = high < *last ? (high > *first ? RoundDown(high) : *first - 1) : *last;
+}
+
 // Whether the plane keeps out of outside cells within a box of a few voxels. A plane that follows
 // the border closely does, where boxes would have to be as small as cells.
 static bool IsSlabInside(Walk* walk, const Box* box)
 {
-    const pvtInsideTest* test = walk->test;
-    const pvtCellGrid* grid = test->interior.cells;
+    const pvtBitGrid* allowed = walk->test->interior.allowed;
     const Range voxels = GetRange(box, 1.0), cells = GetRange(box, PVT_CELLS);
-    if (!IsInGrid(test, &voxels)) {
+    if (!IsInGrid(walk->test, &voxels)) {
         return false;
     }
     for (int z = voxels.low[2]; z <= voxels.high[2]; ++z) {
         for (int y = voxels.low[1]; y <= voxels.high[1]; ++y) {
-            for (int x = voxels.low[0]; x <= voxels.high[0]; ++x) {
-                const pvtVec3 middle = {x + 0.5, y + 0.5, z + 0.5};
-                const double height = pvtDot(walk->normal, middle) - walk->distance;
-                if (fabs(height) > walk->reach + SLACK ||
-                    pvtBitGrid_Get(test->interior.allowed, x, y, z)) {
-                    continue;
-                }
-                const size_t voxel = grid != NULL ? pvtCellGrid_Find(grid, x, y, z) : PVT_NO_CELLS;
-                const uint64_t open = voxel != PVT_NO_CELLS ? test->open[voxel] : 0;
-                const uint64_t passed =
-                    GetCellsInRange(&cells, (int[3]){x, y, z}) & GetCellsInPlane(walk, height);
-                if ((passed & ~open) != 0) {
-                    return false;
-                }
-                if (test->interior.touching != NULL && voxel != PVT_NO_CELLS &&
-                    (passed & grid->border[voxel]) != 0 && !NoteVoxel(walk, voxel)) {
+            const uint64_t* row = pvtBitGrid_GetRow(allowed, y, z);
+            const double start =
+                pvtDot(walk->normal, (pvtVec3){0.5, y + 0.5, z + 0.5}) - walk->distance;
+            int first = voxels.low[0], last = voxels.high[0];
+            FindPassed(walk, start, &first, &last);
+            for (int x = first; x <= last; ++x) {
+                if (!pvtGetBit(row, (size_t)x) &&
+                    !IsVoxelInside(walk, &cells, (int[3]){x, y, z}, start + walk->normal.x * x)) {
                     return false;
                 }
             }
