@@ -14,6 +14,9 @@ typedef struct pvtInsideTest {
                     ///< along the farthest axis, the nearest such block is
 } pvtInsideTest;
 
+/// [vx] How far beyond the face between two voxels or cells counts as on it.
+#define PVT_INSIDE_SLACK (1.0 / 8192.0)
+
 /// What `interior` refers to stays the caller's.
 pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtInterior* interior,
                               pvtInsideTest* test);
@@ -25,13 +28,18 @@ bool pvtInsideTest_HasPoint(const pvtInsideTest* test, pvtVec3 point);
 
 /// Whether a triangle lies in allowed and border cells, somewhere in an allowed one, and crosses no
 /// triangle of the surface in a border cell. Then none of it is outside, since whoever walks on it
-/// from the inside never passes the surface. False also when it passes an outside cell so
-/// closely that telling them apart would take pieces below 1/24 voxel.
+/// from the inside never passes the surface.
 bool pvtInsideTest_HasTriangle(const pvtInsideTest* test, const pvtVec3 corners[3]);
 /// The same; when it is false, `outside` is a point of the triangle that is not inside, or where it
 /// crosses the surface.
 bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
                                pvtVec3* outside);
+
+static inline int pvtInsideTest_GetReach(const pvtInsideTest* test, const int block[3])
+{
+    const size_t row = (size_t)block[2] * (size_t)test->blocks[1] + (size_t)block[1];
+    return test->reach[row * (size_t)test->blocks[0] + (size_t)block[0]];
+}
 
 /// One look at the blocks: whether a ball lies where voxels are allowed as wholes. False may be
 /// wrong, by up to two blocks.
@@ -47,9 +55,7 @@ static inline bool pvtInsideTest_HasBall(const pvtInsideTest* test, const float 
         }
         block[axis] = (int)at;
     }
-    const size_t row = (size_t)block[2] * (size_t)test->blocks[1] + (size_t)block[1];
-    const int reach = test->reach[row * (size_t)test->blocks[0] + (size_t)block[0]];
-    return radius <= (float)((reach - 1) * test->blockSize);
+    return radius <= (float)((pvtInsideTest_GetReach(test, block) - 1) * test->blockSize);
 }
 
 #endif

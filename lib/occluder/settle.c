@@ -23,7 +23,7 @@ typedef struct Settling {
     float (*goals)[3]; // of each corner: where the ascent left it, if it retreated, or where it is
 } Settling;
 
-// Shares of the corners in a point of the triangle (Ericson, Real-Time Collision Detection, 2004,
+// Shares of the corners in a point at the triangle (Ericson, Real-Time Collision Detection, 2004,
 // section 3.4).
 static void FindShares(const pvtVec3 corners[3], pvtVec3 point, float shares[3])
 {
@@ -34,9 +34,17 @@ static void FindShares(const pvtVec3 corners[3], pvtVec3 point, float shares[3])
     const double scale = aa * bb - ab * ab;
     const double u = scale > 0.0 ? (bb * pa - ab * pb) / scale : 0.0;
     const double v = scale > 0.0 ? (aa * pb - ab * pa) / scale : 0.0;
+    float sum = 0.0F;
     shares[0] = (float)(1.0 - u - v);
     shares[1] = (float)u;
     shares[2] = (float)v;
+    for (int k = 0; k < 3; ++k) {
+        shares[k] = shares[k] > 0.0F ? shares[k] : 0.0F;
+        sum += shares[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        shares[k] /= sum;
+    }
 }
 
 static void TestTriangles(size_t begin, size_t end, int worker, void* taskData)
