@@ -12,7 +12,7 @@
 
 enum { MOST_ROUNDS = 64, RETREATS = 8 };
 
-static const float LEAST_PUSH = 0.06F, PUSH_GROWTH = 0.01F; // [vx], and more with every round
+static const float PUSH_GROWTH = 0.01F; // [vx] a round
 
 // What is looked at again: triangles of which a corner moved since they were found inside.
 typedef struct Settling {
@@ -99,7 +99,7 @@ static int TestAll(pvtContext* context, Settling* settling)
 static void PushOutside(Settling* settling, int round)
 {
     pvtAscent* ascent = settling->ascent;
-    const float least = LEAST_PUSH + PUSH_GROWTH * (float)round;
+    const float least = PUSH_GROWTH * (float)round;
     for (int t = 0; t < ascent->set.triangleCount; ++t) {
         if (settling->isOutside[t]) {
             const float lack = least - settling->contacts[t].depth;
