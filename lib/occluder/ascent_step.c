@@ -27,7 +27,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
     static const struct {
         int tries, iterations, cycles, sights, batch, polish;
     } efforts[] = {[PVT_EFFORT_FAST] = {1, 240, 0, 512, 16, 1},
-                   [PVT_EFFORT_DEFAULT] = {1, 400, 4, 1024, 12, 3},
+                   [PVT_EFFORT_DEFAULT] = {1, 400, 6, 1024, 12, 3},
                    [PVT_EFFORT_BEST] = {4, 800, 16, 1024, 16, 12}};
     const int effort = (int)build->options->effort;
     const int budget = build->options->budget;

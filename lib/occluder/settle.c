@@ -47,27 +47,47 @@ static void FindShares(const pvtVec3 corners[3], pvtVec3 point, float shares[3])
     }
 }
 
+static pvtVec3 GetPlace(const pvtVec3 corners[3], const float shares[3])
+{
+    return pvtAdd(
+        pvtScale(corners[0], (double)shares[0]),
+        pvtAdd(pvtScale(corners[1], (double)shares[1]), pvtScale(corners[2], (double)shares[2])));
+}
+
+// Looks first at the point that was outside the last time.
+static bool FindOutside(const Settling* settling, int triangle, pvtVec3* outside)
+{
+    const pvtInsideTest* inside = settling->ascent->options->inside;
+    pvtContact* contact = &settling->contacts[triangle];
+    pvtVec3 corners[3];
+    pvtAscent_GetTriangle(settling->ascent, triangle, corners);
+    if (settling->isOutside[triangle]) {
+        *outside = GetPlace(corners, contact->shares);
+        if (!pvtInsideTest_HasPoint(inside, *outside)) {
+            return true;
+        }
+    }
+    if (pvtInsideTest_FindOutside(inside, corners, outside)) {
+        return false;
+    }
+    contact->triangle = triangle;
+    FindShares(corners, *outside, contact->shares);
+    return true;
+}
+
 static void TestTriangles(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Settling* settling = taskData;
-    const pvtAscent* ascent = settling->ascent;
     for (int t = (int)begin; t < (int)end; ++t) {
-        settling->isOutside[t] = false;
-        if (settling->isSettled[t]) {
-            continue;
-        }
-        pvtVec3 corners[3], outside;
-        pvtAscent_GetTriangle(ascent, t, corners);
-        settling->isSettled[t] =
-            pvtInsideTest_FindOutside(ascent->options->inside, corners, &outside);
-        if (!settling->isSettled[t]) {
+        pvtVec3 outside;
+        settling->isOutside[t] = !settling->isSettled[t] && FindOutside(settling, t, &outside);
+        settling->isSettled[t] = !settling->isOutside[t];
+        if (settling->isOutside[t]) {
             pvtContact* contact = &settling->contacts[t];
-            contact->triangle = t;
-            FindShares(corners, outside, contact->shares);
             const float point[3] = {(float)outside.x, (float)outside.y, (float)outside.z};
-            contact->depth = pvtField_GetDepthAndInward(&ascent->field, point, contact->inward);
-            settling->isOutside[t] = true;
+            contact->depth =
+                pvtField_GetDepthAndInward(&settling->ascent->field, point, contact->inward);
         }
     }
 }
