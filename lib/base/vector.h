@@ -48,6 +48,12 @@ static inline bool pvtIsFinite3(pvtVec3 a)
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
 }
 
+/// By x, then y, then z.
+static inline bool pvtIsBefore(pvtVec3 a, pvtVec3 b)
+{
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
 /// Coordinate 0, 1 or 2.
 static inline double pvtGetAxis(pvtVec3 a, int axis)
 {

@@ -68,26 +68,34 @@ static bool IsSeen(uint32_t* seen, int* count, uint32_t triangle)
     return false;
 }
 
-// Looks at the surface in the voxels that are noted, and forgets them.
-static void FindCrossings(Walk* walk)
+// Of the places where the triangle crosses the surface within a voxel the first in space, so that
+// the order of the mesh's triangles does not matter.
+static void FindCrossingsInVoxel(Walk* walk, uint32_t voxel, uint32_t* seen, int* seenCount)
 {
     const pvtTouching* touching = walk->test->interior.touching;
     const pvtCellGrid* cells = walk->test->interior.cells;
+    for (uint32_t k = touching->starts[voxel]; k < touching->starts[voxel + 1]; ++k) {
+        const uint32_t triangle = touching->triangles[k];
+        if (IsSeen(seen, seenCount, triangle)) {
+            continue;
+        }
+        pvtVec3 surface[3], ends[2], place;
+        pvtGetGridTriangle(&cells->voxels.frame, touching->mesh, triangle, surface);
+        if (pvtFindCrossing(walk->corners, surface, ends) && pvtPassesBorder(cells, ends, &place)) {
+            walk->outside =
+                walk->crosses && !pvtIsBefore(place, walk->outside) ? walk->outside : place;
+            walk->crosses = true;
+        }
+    }
+}
+
+// Looks at the surface in the voxels that are noted, and forgets them.
+static void FindCrossings(Walk* walk)
+{
     uint32_t seen[SEEN_SLOTS] = {0};
     int seenCount = 0;
     for (int i = 0; i < walk->notedCount && !walk->crosses; ++i) {
-        const uint32_t voxel = walk->noted[i];
-        for (uint32_t k = touching->starts[voxel];
-             k < touching->starts[voxel + 1] && !walk->crosses; ++k) {
-            const uint32_t triangle = touching->triangles[k];
-            if (IsSeen(seen, &seenCount, triangle)) {
-                continue;
-            }
-            pvtVec3 surface[3], ends[2];
-            pvtGetGridTriangle(&cells->voxels.frame, touching->mesh, triangle, surface);
-            walk->crosses = pvtFindCrossing(walk->corners, surface, ends) &&
-                            pvtPassesBorder(cells, ends, &walk->outside);
-        }
+        FindCrossingsInVoxel(walk, walk->noted[i], seen, &seenCount);
     }
     walk->notedCount = 0;
     memset(walk->slots, 0, sizeof walk->slots);

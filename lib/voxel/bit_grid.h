@@ -28,12 +28,19 @@ static inline pvtVec3 pvtToGrid(const pvtGridFrame* frame, pvtVec3 place)
     return pvtScale(pvtSub(place, frame->origin), 1.0 / frame->voxelSize);
 }
 
-/// The same of a triangle's corners.
+/// The same of a triangle's corners, from the least one on: what is computed from them does not
+/// depend on which one a file names first.
 static inline void pvtGetGridTriangle(const pvtGridFrame* frame, const pvtMesh* mesh,
                                       size_t triangle, pvtVec3 corners[3])
 {
+    const pvtVec3* positions = mesh->positions;
+    const uint32_t* indices = mesh->indices + 3 * triangle;
+    size_t first = 0;
+    for (size_t k = 1; k < 3; ++k) {
+        first = pvtIsBefore(positions[indices[k]], positions[indices[first]]) ? k : first;
+    }
     for (size_t k = 0; k < 3; ++k) {
-        corners[k] = pvtToGrid(frame, mesh->positions[mesh->indices[3 * triangle + k]]);
+        corners[k] = pvtToGrid(frame, positions[indices[(first + k) % 3]]);
     }
 }
 
