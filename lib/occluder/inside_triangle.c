@@ -201,9 +201,10 @@ static uint64_t GetCellsOfPiece(PieceCells* piece, const int voxel[3])
 static pvtVec3 GetPlace(const Walk* walk, const int voxel[3], uint64_t cells)
 {
     const int cell = __builtin_ctzll(cells);
+    const int row = cell / PVT_CELLS, layer = row / PVT_CELLS;
     const pvtVec3 middle = {voxel[0] + (cell % PVT_CELLS + 0.5) / PVT_CELLS,
-                            voxel[1] + (cell / PVT_CELLS % PVT_CELLS + 0.5) / PVT_CELLS,
-                            voxel[2] + (cell / (PVT_CELLS * PVT_CELLS) + 0.5) / PVT_CELLS};
+                            voxel[1] + (row % PVT_CELLS + 0.5) / PVT_CELLS,
+                            voxel[2] + (layer + 0.5) / PVT_CELLS};
     const double height = pvtDot(walk->normal, middle) - walk->distance;
     return pvtSub(middle, pvtScale(walk->normal, height));
 }
