@@ -30,8 +30,8 @@ bool pvtInsideTest_HasPoint(const pvtInsideTest* test, pvtVec3 point);
 /// triangle of the surface in a border cell. Then none of it is outside, since whoever walks on it
 /// from the inside never passes the surface.
 bool pvtInsideTest_HasTriangle(const pvtInsideTest* test, const pvtVec3 corners[3]);
-/// The same; when it is false, `outside` is a point of the triangle that is not inside, or where it
-/// crosses the surface.
+/// The same; when it is false, `outside` is a point of the triangle's plane where it is not inside,
+/// beyond the triangle by less than a cell if at all, or where it crosses the surface.
 bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
                                pvtVec3* outside);
 
