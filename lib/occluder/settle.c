@@ -23,8 +23,14 @@ typedef struct Settling {
     float (*goals)[3]; // of each corner: where the ascent left it, if it retreated, or where it is
 } Settling;
 
-// Shares of the corners in a point at the triangle (Ericson, Real-Time Collision Detection, 2004,
-// section 3.4).
+// Of triangles without much area shares may be anything.
+static double Limit(double share)
+{
+    return share > -2.0 ? (share < 2.0 ? share : 2.0) : -2.0;
+}
+
+// Shares of the corners in a point at the triangle, none below 0 (Ericson, Real-Time Collision
+// Detection, 2004, section 3.4).
 static void FindShares(const pvtVec3 corners[3], pvtVec3 point, float shares[3])
 {
     const pvtVec3 a = pvtSub(corners[1], corners[0]), b = pvtSub(corners[2], corners[0]);
@@ -32,8 +38,8 @@ static void FindShares(const pvtVec3 corners[3], pvtVec3 point, float shares[3])
     const double aa = pvtDot(a, a), ab = pvtDot(a, b), bb = pvtDot(b, b);
     const double pa = pvtDot(p, a), pb = pvtDot(p, b);
     const double scale = aa * bb - ab * ab;
-    const double u = scale > 0.0 ? (bb * pa - ab * pb) / scale : 0.0;
-    const double v = scale > 0.0 ? (aa * pb - ab * pa) / scale : 0.0;
+    const double u = scale > 0.0 ? Limit((bb * pa - ab * pb) / scale) : 0.0;
+    const double v = scale > 0.0 ? Limit((aa * pb - ab * pa) / scale) : 0.0;
     float sum = 0.0F;
     shares[0] = (float)(1.0 - u - v);
     shares[1] = (float)u;
