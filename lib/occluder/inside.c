@@ -47,11 +47,6 @@ static bool AreVoxelsSet(const pvtBitGrid* grid, const Range* range)
     return true;
 }
 
-static size_t GetBlockIndex(const pvtInsideTest* test, int x, int y, int z)
-{
-    return ((size_t)z * (size_t)test->blocks[1] + (size_t)y) * (size_t)test->blocks[0] + (size_t)x;
-}
-
 static void MarkBlocks(pvtInsideTest* test)
 {
     const int side = test->blockSize;
@@ -60,7 +55,7 @@ static void MarkBlocks(pvtInsideTest* test)
             for (int x = 0; x < test->blocks[0]; ++x) {
                 const Range range = {{x * side, y * side, z * side},
                                      {(x + 1) * side - 1, (y + 1) * side - 1, (z + 1) * side - 1}};
-                test->reach[GetBlockIndex(test, x, y, z)] =
+                test->reach[pvtInsideTest_GetBlock(test, x, y, z)] =
                     AreVoxelsSet(test->interior.allowed, &range) ? MAX_REACH : 0;
             }
         }
@@ -77,7 +72,7 @@ static int GetReachFromBefore(const pvtInsideTest* test, const int block[3], int
         const int z = block[2] - step + step * (i / 9);
         const bool isIn = x >= 0 && y >= 0 && z >= 0 && x < test->blocks[0] &&
                           y < test->blocks[1] && z < test->blocks[2];
-        const int reach = isIn ? test->reach[GetBlockIndex(test, x, y, z)] + 1 : 1;
+        const int reach = isIn ? test->reach[pvtInsideTest_GetBlock(test, x, y, z)] + 1 : 1;
         least = reach < least ? reach : least;
     }
     return least;

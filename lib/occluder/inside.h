@@ -35,10 +35,10 @@ bool pvtInsideTest_HasTriangle(const pvtInsideTest* test, const pvtVec3 corners[
 bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
                                pvtVec3* outside);
 
-static inline int pvtInsideTest_GetReach(const pvtInsideTest* test, const int block[3])
+/// Place of a block in `reach`.
+static inline size_t pvtInsideTest_GetBlock(const pvtInsideTest* test, int x, int y, int z)
 {
-    const size_t row = (size_t)block[2] * (size_t)test->blocks[1] + (size_t)block[1];
-    return test->reach[row * (size_t)test->blocks[0] + (size_t)block[0]];
+    return ((size_t)z * (size_t)test->blocks[1] + (size_t)y) * (size_t)test->blocks[0] + (size_t)x;
 }
 
 /// One look at the blocks: whether a ball lies where voxels are allowed as wholes. False may be
@@ -55,7 +55,8 @@ static inline bool pvtInsideTest_HasBall(const pvtInsideTest* test, const float 
         }
         block[axis] = (int)at;
     }
-    return radius <= (float)((pvtInsideTest_GetReach(test, block) - 1) * test->blockSize);
+    const int reach = test->reach[pvtInsideTest_GetBlock(test, block[0], block[1], block[2])];
+    return radius <= (float)((reach - 1) * test->blockSize);
 }
 
 #endif

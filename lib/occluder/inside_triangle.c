@@ -23,7 +23,7 @@ enum {
     NOTED_SLOTS = 4096,
     SEEN_SLOTS = 2048,
     BINS = 64,
-    ALL_CELLS = PVT_CELLS - 1
+    LAST_CELL = PVT_CELLS - 1
 };
 
 static const double PIECE_SIDE = MOST_ROWS - 3.0; // [vx] below which pieces are cut into rows
@@ -153,20 +153,22 @@ static uint64_t GetCellsInPlane(Walk* walk, double height)
 
 // The cells of a piece in one layer of voxels, as long as that is the one that is looked at.
 typedef struct PieceCells {
-    pvtRowCutter cutter;
-    int layer; // of voxels; −1: none
+    const pvtVec3* corners; // of the piece
+    int layer;              // of voxels; −1: none
     pvtRows rows[PVT_CELLS];
     pvtRowSpan spans[PVT_CELLS][PVT_CELLS * MOST_ROWS];
 } PieceCells;
 
 static void CutCells(PieceCells* piece, int layer)
 {
+    const pvtRowCutter cutter =
+        pvtStartRows(piece->corners, PVT_CELLS, PVT_CELLS * PVT_INSIDE_SLACK);
     for (int i = 0; i < PVT_CELLS; ++i) {
         const int at = PVT_CELLS * layer + i;
         pvtRows* rows = &piece->rows[i];
         *rows = (pvtRows){.spans = piece->spans[i], .first = 0, .last = -1};
-        if (at >= piece->cutter.firstLayer && at <= piece->cutter.lastLayer) {
-            pvtCutLayer(&piece->cutter, at, rows);
+        if (at >= cutter.firstLayer && at <= cutter.lastLayer) {
+            pvtCutLayer(&cutter, at, rows);
         }
     }
     piece->layer = layer;
@@ -190,7 +192,7 @@ static uint64_t GetCellsOfPiece(PieceCells* piece, const int voxel[3])
         first -= PVT_CELLS * voxel[0];
         last -= PVT_CELLS * voxel[0];
         if (first < PVT_CELLS && last >= 0) {
-            const unsigned end = (unsigned)(last < ALL_CELLS ? last : ALL_CELLS) + 1;
+            const unsigned end = (unsigned)(last < LAST_CELL ? last : LAST_CELL) + 1;
             mask |= pvtMakeMask((unsigned)(first > 0 ? first : 0), end) << (PVT_CELLS * row);
         }
     }
@@ -256,7 +258,7 @@ static bool AreRowsInside(Walk* walk, const pvtVec3 corners[3])
     pvtRowSpan spans[MOST_ROWS];
     pvtRows rows = {.spans = spans};
     PieceCells piece;
-    piece.cutter = pvtStartRows(corners, PVT_CELLS, PVT_CELLS * PVT_INSIDE_SLACK);
+    piece.corners = corners;
     piece.layer = -1;
     const pvtRowCutter cutter = pvtStartRows(corners, 1.0, PVT_INSIDE_SLACK);
     for (int z = cutter.firstLayer; z <= cutter.lastLayer; ++z) {
@@ -283,7 +285,7 @@ static bool IsDeepInside(const pvtInsideTest* test, const Box* box)
         }
         block[axis] = (int)middle;
     }
-    const int reach = pvtInsideTest_GetReach(test, block);
+    const int reach = test->reach[pvtInsideTest_GetBlock(test, block[0], block[1], block[2])];
     for (int axis = 0; axis < 3; ++axis) {
         if (box->low[axis] < (block[axis] - reach + 1) * test->blockSize ||
             box->high[axis] > (block[axis] + reach) * test->blockSize) {

@@ -4,6 +4,7 @@
 #include "rows.h"
 
 #include "base/vector.h"
+#include "voxel/cut.h"
 
 #include <math.h>
 
@@ -21,33 +22,10 @@ pvtRowCutter pvtStartRows(const pvtVec3 corners[3], double scale, double slack)
     for (int i = 0; i < 3; ++i) {
         cutter.corners[i] = pvtScale(corners[i], scale);
     }
-    pvtVec3* c = cutter.corners;
-    for (int i = 0; i < 3; ++i) {
-        const int a = i == 1 ? 1 : 0;
-        if (c[a].z > c[a + 1].z) {
-            const pvtVec3 swapped = c[a];
-            c[a] = c[a + 1];
-            c[a + 1] = swapped;
-        }
-    }
+    pvtSortByZ(cutter.corners);
+    const pvtVec3* c = cutter.corners;
     FindRange(c[0].z, c[2].z, slack, &cutter.firstLayer, &cutter.lastLayer);
     return cutter;
-}
-
-typedef struct Point {
-    double x, y;
-} Point;
-
-static Point Project(pvtVec3 p)
-{
-    return (Point){p.x, p.y};
-}
-
-// Where an edge reaches a height, for a.z < b.z.
-static Point Cut(pvtVec3 a, pvtVec3 b, double z)
-{
-    const double t = (z - a.z) / (b.z - a.z);
-    return (Point){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
 }
 
 static void Widen(pvtRows* rows, int y, double x)
@@ -58,9 +36,9 @@ static void Widen(pvtRows* rows, int y, double x)
     span->high = x > span->high ? x : span->high;
 }
 
-static void AddSegment(pvtRows* rows, Point a, Point b)
+static void AddSegment(pvtRows* rows, pvtFlatPoint a, pvtFlatPoint b)
 {
-    const Point low = a.y < b.y ? a : b, high = a.y < b.y ? b : a;
+    const pvtFlatPoint low = a.y < b.y ? a : b, high = a.y < b.y ? b : a;
     const int from = (int)low.y, to = (int)high.y;
     Widen(rows, from, low.x);
     Widen(rows, to, high.x);
@@ -76,7 +54,7 @@ static void AddSegment(pvtRows* rows, Point a, Point b)
 }
 
 // Of a convex polygon in the order of its corners.
-static void AddPolygon(pvtRows* rows, const Point* corners, int count)
+static void AddPolygon(pvtRows* rows, const pvtFlatPoint* corners, int count)
 {
     double low = corners[0].y, high = corners[0].y;
     for (int i = 1; i < count; ++i) {
@@ -92,30 +70,25 @@ static void AddPolygon(pvtRows* rows, const Point* corners, int count)
     }
 }
 
-// Where the way over the middle corner reaches a height.
-static Point CutWay(const pvtVec3 c[3], double z)
-{
-    return z < c[1].z ? Cut(c[0], c[1], z) : z > c[1].z ? Cut(c[1], c[2], z) : Project(c[1]);
-}
-
 void pvtCutLayer(const pvtRowCutter* cutter, int layer, pvtRows* rows)
 {
     const pvtVec3* c = cutter->corners;
     rows->slack = cutter->slack;
     if (cutter->firstLayer == cutter->lastLayer) {
-        AddPolygon(rows, (Point[3]){Project(c[0]), Project(c[1]), Project(c[2])}, 3);
+        AddPolygon(rows, (pvtFlatPoint[3]){pvtFlatten(c[0]), pvtFlatten(c[1]), pvtFlatten(c[2])},
+                   3);
         return;
     }
     const double low = layer == cutter->firstLayer ? c[0].z : layer;
     const double high = layer == cutter->lastLayer ? c[2].z : layer + 1;
-    Point corners[5];
+    pvtFlatPoint corners[5];
     int count = 0;
-    corners[count++] = Cut(c[0], c[2], low);
-    corners[count++] = Cut(c[0], c[2], high);
-    corners[count++] = CutWay(c, high);
+    corners[count++] = pvtCutEdge(c[0], c[2], low);
+    corners[count++] = pvtCutEdge(c[0], c[2], high);
+    corners[count++] = pvtCutWay(c, high);
     if (low < c[1].z && c[1].z < high) {
-        corners[count++] = Project(c[1]);
+        corners[count++] = pvtFlatten(c[1]);
     }
-    corners[count++] = CutWay(c, low);
+    corners[count++] = pvtCutWay(c, low);
     AddPolygon(rows, corners, count);
 }

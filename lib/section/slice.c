@@ -373,11 +373,9 @@ static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plan
                                      .cellsPerVoxel = 1}};
     const int64_t farU = 3 * slicing.stepU, farV = 3 * slicing.stepV;
     slicing.least = (farU < 0 ? farU : 0) + (farV < 0 ? farV : 0);
+    slicing.reach = (int)(6 * (u + v)) + slicing.span;
     for (int i = 0; i < PATCHES; ++i) {
         slicing.rises[i] = (int)(slicing.stepU * (i % 4) + slicing.stepV * (i / 4) - slicing.least);
-        slicing.reach = slicing.rises[i] + slicing.span > slicing.reach
-                            ? slicing.rises[i] + slicing.span
-                            : slicing.reach;
     }
     PlaceSamples(plane, PVT_SLICE_COVERED, &slicing.whole);
     slicing.partly = slicing.whole;

@@ -15,6 +15,7 @@
 // voxel is missed, and none is marked that is farther from the triangle than 4e-9 along any axis.
 #include "bit_grid.h"
 #include "cell_grid.h"
+#include "cut.h"
 #include "frame.h"
 
 #include "base/context.h"
@@ -56,10 +57,6 @@ typedef struct Slab {
 typedef struct Triangle {
     pvtVec3 corner[3];
 } Triangle;
-
-typedef struct Point2 {
-    double x, y;
-} Point2;
 
 static double Min(double a, double b)
 {
@@ -170,10 +167,10 @@ static void WidenSpan(RowSpan* span, double a, double b)
 }
 
 // Widens the rows that the segment passes by the part of it within each.
-static void AddSegment(const Slab* slab, Point2 a, Point2 b)
+static void AddSegment(const Slab* slab, pvtFlatPoint a, pvtFlatPoint b)
 {
     if (a.y > b.y) {
-        const Point2 swapped = a;
+        const pvtFlatPoint swapped = a;
         a = b;
         b = swapped;
     }
@@ -196,18 +193,6 @@ static void AddSegment(const Slab* slab, Point2 a, Point2 b)
     WidenSpan(&slab->spans[last], from, b.x);
 }
 
-static Point2 Project(pvtVec3 p)
-{
-    return (Point2){p.x, p.y};
-}
-
-// Where the edge a–b crosses the height z, for a.z < b.z.
-static Point2 Cut(pvtVec3 a, pvtVec3 b, double z)
-{
-    const double t = (z - a.z) / (b.z - a.z);
-    return (Point2){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
-}
-
 static void BeginRows(Slab* slab, double low, double high)
 {
     slab->firstRow = (int)(low - margin);
@@ -222,9 +207,9 @@ static void AddWhole(Slab* slab, const Triangle* t)
 {
     const pvtVec3* c = t->corner;
     BeginRows(slab, Min(c[0].y, Min(c[1].y, c[2].y)), Max(c[0].y, Max(c[1].y, c[2].y)));
-    AddSegment(slab, Project(c[0]), Project(c[1]));
-    AddSegment(slab, Project(c[1]), Project(c[2]));
-    AddSegment(slab, Project(c[2]), Project(c[0]));
+    AddSegment(slab, pvtFlatten(c[0]), pvtFlatten(c[1]));
+    AddSegment(slab, pvtFlatten(c[1]), pvtFlatten(c[2]));
+    AddSegment(slab, pvtFlatten(c[2]), pvtFlatten(c[0]));
 }
 
 // The part of the triangle between two heights. Corners are sorted by z and low ≤ high lie
@@ -233,15 +218,11 @@ static void AddWhole(Slab* slab, const Triangle* t)
 static void AddPart(Slab* slab, const Triangle* t, double low, double high)
 {
     const pvtVec3* c = t->corner;
-    const Point2 longLow = Cut(c[0], c[2], low);
-    const Point2 longHigh = Cut(c[0], c[2], high);
-    const Point2 middle = Project(c[1]);
-    const Point2 shortLow = low < c[1].z   ? Cut(c[0], c[1], low)
-                            : low > c[1].z ? Cut(c[1], c[2], low)
-                                           : middle;
-    const Point2 shortHigh = high < c[1].z   ? Cut(c[0], c[1], high)
-                             : high > c[1].z ? Cut(c[1], c[2], high)
-                                             : middle;
+    const pvtFlatPoint longLow = pvtCutEdge(c[0], c[2], low);
+    const pvtFlatPoint longHigh = pvtCutEdge(c[0], c[2], high);
+    const pvtFlatPoint middle = pvtFlatten(c[1]);
+    const pvtFlatPoint shortLow = pvtCutWay(c, low);
+    const pvtFlatPoint shortHigh = pvtCutWay(c, high);
     const bool bends = low < c[1].z && c[1].z < high;
     const double lowest = Min(Min(longLow.y, longHigh.y), Min(shortLow.y, shortHigh.y));
     const double highest = Max(Max(longLow.y, longHigh.y), Max(shortLow.y, shortHigh.y));
@@ -253,18 +234,6 @@ static void AddPart(Slab* slab, const Triangle* t, double low, double high)
     AddSegment(slab, shortLow, bends ? middle : shortHigh);
     if (bends) {
         AddSegment(slab, middle, shortHigh);
-    }
-}
-
-static void SortByZ(Triangle* t)
-{
-    for (int i = 0; i < 3; ++i) {
-        const int a = i == 1 ? 1 : 0;
-        if (t->corner[a].z > t->corner[a + 1].z) {
-            const pvtVec3 swapped = t->corner[a];
-            t->corner[a] = t->corner[a + 1];
-            t->corner[a + 1] = swapped;
-        }
     }
 }
 
@@ -315,7 +284,7 @@ static void MarkTriangle(Voxelizer* voxelizer, Triangle* t, RowSpan* spans)
         IsSpanMarked(voxelizer, y.first, z.last, x) && IsSpanMarked(voxelizer, y.last, z.last, x)) {
         return;
     }
-    SortByZ(t);
+    pvtSortByZ(t->corner);
     Slab slab = {.spans = spans};
     for (slab.z = z.first; slab.z <= z.last; ++slab.z) {
         MarkSlab(voxelizer, t, &slab);

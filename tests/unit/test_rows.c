@@ -22,19 +22,18 @@ static double RollPlace(pvtRandom* random)
     return pvtRandom_Below(random, 4) != 0 ? at : fmax(floor(at) + off, 0.0);
 }
 
-static void RollTriangle(pvtRandom* random, pvtVec3 corners[3])
+// Rolls a triangle, and cuts all of its layers.
+static pvtRowCutter CutRandom(pvtRandom* random, pvtVec3 corners[3], Layers* layers)
 {
     for (int k = 0; k < 3; ++k) {
         corners[k] = (pvtVec3){RollPlace(random), RollPlace(random), RollPlace(random)};
     }
-}
-
-static void CutAll(const pvtRowCutter* cutter, Layers* layers)
-{
-    for (int z = cutter->firstLayer; z <= cutter->lastLayer; ++z) {
+    const pvtRowCutter cutter = pvtStartRows(corners, 1.0, SLACK);
+    for (int z = cutter.firstLayer; z <= cutter.lastLayer; ++z) {
         layers->rows[z].spans = layers->spans[z];
-        pvtCutLayer(cutter, z, &layers->rows[z]);
+        pvtCutLayer(&cutter, z, &layers->rows[z]);
     }
+    return cutter;
 }
 
 static bool IsNearFace(double at)
@@ -61,10 +60,8 @@ static void rows_have_each_voxel_that_a_triangle_passes(void** state)
     int tested = 0;
     for (int round = 0; round < 2000; ++round) {
         pvtVec3 corners[3];
-        RollTriangle(&random, corners);
-        const pvtRowCutter cutter = pvtStartRows(corners, 1.0, SLACK);
         Layers layers;
-        CutAll(&cutter, &layers);
+        const pvtRowCutter cutter = CutRandom(&random, corners, &layers);
         for (int i = 0; i < POINTS; ++i) {
             const double u = pvtRandom_Unit(&random), v = (1.0 - u) * pvtRandom_Unit(&random);
             const pvtVec3 p = pvtAdd(pvtScale(corners[0], 1.0 - u - v),
@@ -102,10 +99,8 @@ static void rows_have_no_voxel_beside_a_triangle(void** state)
     pvtRandom random = pvtMakeRandom(5, 2);
     for (int round = 0; round < 2000; ++round) {
         pvtVec3 corners[3];
-        RollTriangle(&random, corners);
-        const pvtRowCutter cutter = pvtStartRows(corners, 1.0, SLACK);
         Layers layers;
-        CutAll(&cutter, &layers);
+        const pvtRowCutter cutter = CutRandom(&random, corners, &layers);
         for (int z = cutter.firstLayer; z <= cutter.lastLayer; ++z) {
             for (int y = layers.rows[z].first; y <= layers.rows[z].last; ++y) {
                 int first, last;
