@@ -22,8 +22,8 @@
 #include <string.h>
 
 enum {
-    QUADS = 800,            // drawn a sight
-    GOAL_RESOLUTION = 256,  // nodes, about twice as many as half pixels
+    QUADS = 400,            // drawn a sight
+    GOAL_RESOLUTION = 256,  // nodes, about twice as many as pixels
     FIELD_RESOLUTION = 272, // nodes: a voxel each at the default resolution
 };
 

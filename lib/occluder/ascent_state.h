@@ -7,7 +7,7 @@
 #include "contacts.h"
 #include "pull.h"
 
-#define PVT_ASCENT_INSET 0.3F ///< [px] as pvtPullOptions tells
+#define PVT_ASCENT_INSET 0.5F ///< [px] as pvtPullOptions tells
 
 typedef struct pvtAscent {
     const pvtAscentOptions* options;
@@ -30,6 +30,8 @@ typedef struct pvtAscent {
     float reach;    ///< [vx] of a step
 } pvtAscent;
 
+/// Where the mesh has no more triangles than the budget, `set` becomes these, on the surface.
+pvtStatus pvtAscent_TakeMesh(pvtContext* context, pvtAscent* ascent, bool* isTaken);
 /// Takes away the least useful triangles, one after the other, until `count` are left.
 void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count);
 /// Adds up to `count` triangles to the edges behind which there is most to hide; they start as

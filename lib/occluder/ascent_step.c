@@ -26,8 +26,8 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
 {
     static const struct {
         int tries, iterations, cycles, sights, batch, polish;
-    } efforts[] = {[PVT_EFFORT_FAST] = {1, 240, 0, 512, 16, 1},
-                   [PVT_EFFORT_DEFAULT] = {1, 400, 6, 1024, 12, 3},
+    } efforts[] = {[PVT_EFFORT_FAST] = {1, 240, 0, 512, 12, 1},
+                   [PVT_EFFORT_DEFAULT] = {1, 400, 6, 1024, 8, 3},
                    [PVT_EFFORT_BEST] = {4, 800, 16, 1024, 16, 12}};
     const int effort = (int)build->options->effort;
     const int budget = build->options->budget;
@@ -37,6 +37,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .views = &views,
         .goal = build->hiding.words != NULL ? &build->hiding : &build->allowed,
         .inside = &build->inside,
+        .mesh = build->mesh,
         .sheets = &build->sheets,
         .budget = budget,
         .seed = build->options->seed,

@@ -27,13 +27,13 @@ typedef struct Leg {
     double pruneBegin, pruneEnd;  // shares of the leg between which the surplus is taken away
 } Leg;
 
-static const Leg climb[] = {{0.55, 30.0F, 2.3F, 3.0F, 1.8F, 0.0, 1.0},
-                            {0.45, 3.0F, 2.0F, 0.5F, 1.6F, 0.0, 0.0}};
-static const Leg cycle = {0.75, 15.0F, 3.6F, 2.0F, 3.0F, 0.3, 0.7};
+static const Leg climb[] = {{0.55, 120.0F, 2.3F, 3.0F, 1.8F, 0.0, 1.0},
+                            {0.45, 12.0F, 2.8F, 0.5F, 1.6F, 0.0, 0.0}};
+static const Leg cycle = {0.75, 60.0F, 4.5F, 2.0F, 3.0F, 0.3, 0.7};
 
 static const double GROWTH = 0.35;        // triangles added in a cycle, as part of the budget
-static const float JUDGE_SOFTNESS = 0.4F; // [px]
-static const float LATE_SOFTNESS = 3.0F;  // [px] below which contacts are looked for more closely
+static const float JUDGE_SOFTNESS = 0.6F; // [px]
+static const float LATE_SOFTNESS = 12.0F; // [px] below which contacts are looked for more closely
 static const float COARSE_PIECE = 16.0F, FINE_PIECE = 8.0F; // [vx]
 static const float MOMENTUM = 0.9F, SQUARES = 0.98F;
 static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F; // [vx]
@@ -220,6 +220,29 @@ static pvtStatus RunClimb(pvtContext* context, pvtAscent* ascent, int attempt, b
     return KeepIfBetter(context, ascent);
 }
 
+// From the mesh itself. Pushed inside it is crooked, and goes back as far as it can.
+static pvtStatus TryMesh(pvtContext* context, pvtAscent* ascent)
+{
+    const pvtTriangleSet* set = &ascent->set;
+    bool isTaken = false;
+    pvtStatus status = pvtAscent_TakeMesh(context, ascent, &isTaken);
+    if (status != PVT_OK || !isTaken) {
+        return status;
+    }
+    TakeRest(ascent);
+    float(*goals)[3] = pvtAllocate(context, (size_t)set->cornerCount, sizeof *goals);
+    if (goals == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    memcpy(goals, set->corners, (size_t)set->cornerCount * sizeof *goals);
+    status = pvtAscent_Settle(context, ascent);
+    if (status == PVT_OK) {
+        status = pvtAscent_Return(context, ascent, (const float(*)[3])goals);
+    }
+    pvtRelease(context, goals);
+    return status == PVT_OK ? KeepIfBetter(context, ascent) : status;
+}
+
 static pvtStatus RunCycle(pvtContext* context, pvtAscent* ascent, bool* goesOn)
 {
     const int growth = (int)(GROWTH * ascent->options->budget);
@@ -234,9 +257,9 @@ static pvtStatus RunCycle(pvtContext* context, pvtAscent* ascent, bool* goesOn)
 
 pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
 {
-    pvtStatus status = PVT_OK;
     bool goesOn = true;
     ascent->bestWorth = -1.0;
+    pvtStatus status = TryMesh(context, ascent);
     for (int i = 0; i < ascent->options->tries && goesOn && status == PVT_OK; ++i) {
         status = RunClimb(context, ascent, i, &goesOn);
     }

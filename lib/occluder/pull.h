@@ -6,7 +6,10 @@
 #include "sights.h"
 #include "triangle_set.h"
 
-enum { PVT_MOST_BATCH = 64 }; ///< sights at once
+enum {
+    PVT_MOST_BATCH = 64,  ///< sights at once
+    PVT_MOST_WEIGHED = 32 ///< of these that triangles are weighed in
+};
 
 /// A rectangle of which m pixels are not covered counts as 1 ÷ (1 + m ÷ softness): with a softness
 /// near 0 that is 1 if it is hidden and 0 if not, and with a large one it grows with every pixel.
@@ -23,18 +26,15 @@ typedef struct pvtPuller {
     const pvtSightSet* sights; ///< borrowed
     const pvtTriangleSet* set; ///< borrowed
     pvtPullOptions options;
-    float* worths;           ///< of a rectangle by the pixels that it lacks
-    float* slopes;           ///< what it loses with one more
-    float softness;          ///< that the two are made for
     float (*cornerPulls)[2]; ///< sight × corner: [px⁻¹]
     float (*edgePulls)[2];   ///< sight × edge
     double worth[PVT_MOST_BATCH];
     double most[PVT_MOST_BATCH];
-    uint64_t* masks;   ///< sight × triangle × row
-    uint64_t* layers;  ///< sight × row × covered at least once, twice, thrice
-    uint32_t* singles; ///< sight × triangle: pixels that no other triangle covers
-    float* losses;     ///< sight × triangle
-    bool* isWeighed;   ///< of each triangle
+    pvtSightMask* masks;       ///< sight × triangle
+    pvtSightMask (*layers)[3]; ///< sight × covered at least once, twice, thrice
+    uint32_t* singles;         ///< sight × triangle: pixels that no other triangle covers
+    float* losses;             ///< sight × triangle
+    bool* isWeighed;           ///< of each triangle
     // Of all sights together:
     float (*corners)[3]; ///< [vx⁻¹] what the worth grows by as each corner moves
     float (*edges)[3];   ///< the same for a corner between an edge's ends, if it had one
@@ -50,7 +50,7 @@ void pvtPuller_Free(pvtContext* context, pvtPuller* puller);
 /// Fills `share`, `corners` unless they are not wanted, and, if wanted, `edges`.
 void pvtPullCorners(pvtContext* context, const pvtPullOptions* options, pvtPuller* puller);
 /// Fills `triangles`, for at least a quarter of them, those that cover the fewest pixels alone; it
-/// is HUGE_VAL for the others.
+/// is HUGE_VAL for the others. `count` is at most PVT_MOST_WEIGHED.
 void pvtWeighTriangles(pvtContext* context, const pvtPullOptions* options, pvtPuller* puller);
 /// Whether two triangles cover pixels together that no other covers, in some sight that was last
 /// weighed: then they are worth more than each alone.

@@ -8,7 +8,6 @@
 #include <string.h>
 
 enum {
-    WEIGHED = 64,    // sights that triangles are weighed in
     MOST_TAKEN = 16, // at once, as long as none is another's partner
 };
 
@@ -64,7 +63,7 @@ static int ChooseTriangles(const pvtAscent* ascent, int most, int taken[MOST_TAK
 void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count)
 {
     const pvtPullOptions options = {.first = ascent->next,
-                                    .count = WEIGHED,
+                                    .count = PVT_MOST_WEIGHED,
                                     .softness = ascent->softness,
                                     .inset = PVT_ASCENT_INSET};
     while (ascent->set.triangleCount > count && !pvtIsCancelled(context)) {

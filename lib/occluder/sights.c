@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Goals are splatted from the border nodes of the field, which lie closer to each other than
-// pixels. Rectangles have both corners uniform over the screen that the goal spans, as those of
-// pvtEvaluateOccluders; only those that could be hidden are kept, so that a view counts by how much
+// pixels. pvtEvaluateOccluders draws rectangles with both corners uniform over the screen that the
+// object spans, and counts their pixels: here they are drawn in proportion to their area, and count
+// alike within a view. Only those that could be hidden are drawn, and a view counts by how much
 // there is to hide.
 #include "sights.h"
 #include "points.h"
@@ -16,7 +17,8 @@
 
 enum {
     SIZE = PVT_SIGHT_SIZE,
-    MARGIN = 2,
+    CELLS = PVT_SIGHT_CELLS,
+    MARGIN = 4, // [px]
     STREAM = 0x51675,
     EXPOSURES = 64, // sets of sides of a node
 };
@@ -166,8 +168,8 @@ static float Dot(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// The box around the points fills the screen up to a margin, shifted by part of a pixel: so no two
-// views have their pixels in the same places.
+// The box around the points fills the screen up to a margin, shifted by part of a cell: so no two
+// views have their cells in the same places.
 static void AimSight(const Splatter* splatter, const pvtView* view, pvtRandom* random,
                      pvtSight* sight)
 {
@@ -186,8 +188,9 @@ static void AimSight(const Splatter* splatter, const pvtView* view, pvtRandom* r
     sight->pixelSize = span / (SIZE - MARGIN);
     ToFloats(view->right, 1.0 / sight->pixelSize, sight->right);
     ToFloats(view->up, 1.0 / sight->pixelSize, sight->up);
-    const float shiftX = (float)pvtRandom_Unit(random) - 0.5F;
-    const float shiftY = (float)pvtRandom_Unit(random) - 0.5F;
+    const float cell = (float)SIZE / CELLS;
+    const float shiftX = cell * ((float)pvtRandom_Unit(random) - 0.5F);
+    const float shiftY = cell * ((float)pvtRandom_Unit(random) - 0.5F);
     sight->x = 0.5F * SIZE + shiftX - Dot(center, sight->right);
     sight->y = 0.5F * SIZE + shiftY - Dot(center, sight->up);
 }
@@ -203,74 +206,78 @@ static uint64_t PackEven(uint64_t bits)
     return (bits | bits >> 16) & UINT64_C(0x00000000FFFFFFFF);
 }
 
-// Sets the half pixels that a node covers, seen as a square; a small one sets that of its middle.
-static void SplatNode(uint64_t (*halves)[2], float x, float y, float reach)
+// Sets the pixels that a node covers, seen as a square; a small one sets that of its middle.
+static void SplatNode(pvtSightMask* mask, float x, float y, float reach)
 {
-    pvtSetBit(halves[(int)y], (size_t)x);
     if (reach <= 0.5F * WIDENING) {
+        const size_t column = (size_t)x;
+        mask->words[column >> 6][(int)y] |= UINT64_C(1) << (column & 63);
         return;
     }
     const int left = (int)(x - reach + 0.5F), right = (int)(x + reach + 0.5F);
     const int low = (int)(y - reach + 0.5F), high = (int)(y + reach + 0.5F);
-    for (int row = low > 0 ? low : 0; row < high && row < 2 * SIZE && left < right; ++row) {
-        pvtSetBitRange(halves[row], left > 0 ? (size_t)left : 0,
-                       right < 2 * SIZE ? (size_t)right : 2 * SIZE);
+    for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
+        const int first = left > 64 * half ? left - 64 * half : 0;
+        const int end = right < 64 * (half + 1) ? right - 64 * half : 64;
+        if (first >= end) {
+            continue;
+        }
+        const uint64_t bits = pvtMakeMask((unsigned)first, (unsigned)end);
+        for (int row = low > 0 ? low : 0; row < high && row < SIZE; ++row) {
+            mask->words[half][row] |= bits;
+        }
     }
 }
 
-// To half pixels.
 static pvtPointProjection MakeProjection(const pvtSight* sight)
 {
-    pvtPointProjection projection = {.offset = {2.0F * sight->x, 2.0F * sight->y}};
+    pvtPointProjection projection = {.offset = {sight->x, sight->y}};
     for (int axis = 0; axis < 3; ++axis) {
-        projection.right[axis] = 2.0F * sight->right[axis];
-        projection.up[axis] = 2.0F * sight->up[axis];
+        projection.right[axis] = sight->right[axis];
+        projection.up[axis] = sight->up[axis];
     }
     return projection;
 }
 
-static void SplatPoints(const Splatter* splatter, const pvtSight* sight, size_t begin, size_t end,
-                        uint64_t (*halves)[2])
+static void SplatPoints(const Splatter* splatter, pvtSight* sight, size_t begin, size_t end)
 {
     const pvtPointProjection projection = MakeProjection(sight);
-    const float reach = WIDENING * splatter->nodeSize / sight->pixelSize;
+    const float reach = 0.5F * WIDENING * splatter->nodeSize / sight->pixelSize;
     float places[2][PVT_POINT_GROUP];
     for (size_t first = begin; first < end; first += PVT_POINT_GROUP) {
         const size_t count = end - first < PVT_POINT_GROUP ? end - first : PVT_POINT_GROUP;
         pvtProjectPoints(&projection, splatter->points, first, count, places);
         for (size_t i = 0; i < count; ++i) {
             const float x = places[0][i], y = places[1][i];
-            if (x >= 0.0F && y >= 0.0F && x < 2 * SIZE && y < 2 * SIZE) {
-                SplatNode(halves, x, y, reach);
+            if (x >= 0.0F && y >= 0.0F && x < SIZE && y < SIZE) {
+                SplatNode(&sight->goal, x, y, reach);
             }
         }
     }
 }
 
-// Nodes are as far from each other as half pixels are: one between two that are set is set, too.
-static void FillGaps(uint64_t (*halves)[2])
+// Nodes are as far from each other as pixels are: one between two that are set is set, too.
+static void FillGaps(pvtSightMask* mask)
 {
     uint64_t before[2] = {0};
-    for (int y = 0; y < 2 * SIZE; ++y) {
-        const uint64_t low = halves[y][0], high = halves[y][1];
+    for (int y = 0; y < SIZE; ++y) {
+        const uint64_t low = mask->words[0][y], high = mask->words[1][y];
         const uint64_t sides[2] = {(low << 1) & (low >> 1 | high << 63),
                                    (high << 1 | low >> 63) & high >> 1};
-        for (int word = 0; word < 2; ++word) {
-            const uint64_t after = y + 1 < 2 * SIZE ? halves[y + 1][word] : 0;
-            const uint64_t here = halves[y][word];
-            halves[y][word] |= sides[word] | (before[word] & after);
-            before[word] = here;
+        for (int half = 0; half < 2; ++half) {
+            const uint64_t after = y + 1 < SIZE ? mask->words[half][y + 1] : 0;
+            const uint64_t here = mask->words[half][y];
+            mask->words[half][y] |= sides[half] | (before[half] & after);
+            before[half] = here;
         }
     }
 }
 
-// On pixels of half the size, four of which have to be set: a pixel that is covered in part only
-// could never be hidden as a whole. Whatever is seen is entered through a side that faces the
-// viewer, so that nodes that are exposed on other sides only are left out.
+// Whatever is seen is entered through a side that faces the viewer, so that nodes that are exposed
+// on other sides only are left out.
 static void SplatGoal(const Splatter* splatter, pvtVec3 direction, pvtSight* sight)
 {
-    uint64_t halves[2 * SIZE][2];
-    memset(halves, 0, sizeof halves);
+    memset(&sight->goal, 0, sizeof sight->goal);
     unsigned facing = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const double along = pvtGetAxis(direction, axis);
@@ -278,60 +285,33 @@ static void SplatGoal(const Splatter* splatter, pvtVec3 direction, pvtSight* sig
     }
     for (unsigned e = 1; e < EXPOSURES; ++e) {
         if ((e & facing) != 0) {
-            SplatPoints(splatter, sight, splatter->starts[e], splatter->starts[e + 1], halves);
+            SplatPoints(splatter, sight, splatter->starts[e], splatter->starts[e + 1]);
         }
     }
-    FillGaps(halves);
-    for (size_t y = 0; y < SIZE; ++y) {
-        uint64_t row = 0;
-        for (size_t word = 0; word < 2; ++word) {
-            const uint64_t both = halves[2 * y][word] & halves[2 * y + 1][word];
-            row |= PackEven(both & both >> 1) << (32 * word);
-        }
-        sight->goal[y] = row;
-    }
+    FillGaps(&sight->goal);
 }
 
-static bool IsWithin(const uint64_t goal[SIZE], const pvtSightQuad* quad)
+// Cells of which all four pixels are set: one that is covered in part only could never be hidden as
+// a whole.
+static void FindWholeCells(const pvtSightMask* goal, uint64_t cells[CELLS])
 {
-    const uint64_t mask = pvtMakeMask(quad->x0, quad->x1);
-    for (int y = quad->y0; y < quad->y1; ++y) {
-        if ((goal[y] & mask) != mask) {
-            return false;
+    for (int y = 0; y < CELLS; ++y) {
+        cells[y] = 0;
+        for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
+            const uint64_t both = goal->words[half][2 * y] & goal->words[half][2 * y + 1];
+            cells[y] |= PackEven(both & both >> 1) << (32 * half);
         }
     }
-    return true;
-}
-
-// Both ends of a side, in order, from low to high − 1.
-static void DrawSide(pvtRandom* random, int low, int high, uint8_t* begin, uint8_t* end)
-{
-    const int a = low + (int)pvtRandom_Below(random, (uint32_t)(high - low));
-    const int b = low + (int)pvtRandom_Below(random, (uint32_t)(high - low));
-    *begin = (uint8_t)(a < b ? a : b);
-    *end = (uint8_t)((a < b ? b : a) + 1);
 }
 
 static void DrawQuads(const Splatter* splatter, pvtRandom* random, pvtSight* sight,
                       pvtSightQuad* quads)
 {
-    uint64_t columns = 0;
-    int low = SIZE, high = 0;
-    for (int y = 0; y < SIZE; ++y) {
-        columns |= sight->goal[y];
-        low = sight->goal[y] != 0 && low == SIZE ? y : low;
-        high = sight->goal[y] != 0 ? y + 1 : high;
-    }
-    if (columns == 0) {
-        return;
-    }
-    const int left = __builtin_ctzll(columns), right = 64 - __builtin_clzll(columns);
-    for (int i = 0; i < splatter->options->quads; ++i) {
-        pvtSightQuad* quad = &quads[sight->quadCount];
-        DrawSide(random, left, right, &quad->x0, &quad->x1);
-        DrawSide(random, low, high, &quad->y0, &quad->y1);
-        sight->quadCount += IsWithin(sight->goal, quad) ? 1 : 0;
-    }
+    uint64_t cells[CELLS];
+    double weight = 0.0;
+    FindWholeCells(&sight->goal, cells);
+    sight->quadCount = pvtDrawSightQuads(cells, splatter->options->quads, random, quads, &weight);
+    sight->weight *= (float)weight;
 }
 
 static void MakeSightRange(size_t begin, size_t end, int worker, void* taskData)

@@ -4,43 +4,58 @@
 #ifndef PVT_OCCLUDER_SIGHTS_H
 #define PVT_OCCLUDER_SIGHTS_H
 
+#include "base/random.h"
 #include "field.h"
 
 #include <paravent/occlusion.h>
 
-enum { PVT_SIGHT_SIZE = 64 }; ///< [px] of the masks, a word a row
+enum {
+    PVT_SIGHT_SIZE = 128, ///< [px] of the masks along each side
+    PVT_SIGHT_WORDS = 2,  ///< of 64 pixels a row
+    PVT_SIGHT_CELLS = 64, ///< of 2 × 2 pixels along each side
+};
 
-/// Pixels from x0 to x1 − 1 and from y0 to y1 − 1.
+/// Pixels: bit x & 63 of words[x / 64][y]. Halves lie apart so that loops over rows become vectors.
+typedef struct pvtSightMask {
+    uint64_t words[PVT_SIGHT_WORDS][PVT_SIGHT_SIZE];
+} pvtSightMask;
+
+/// Cells from x0 to x1 − 1 and from y0 to y1 − 1.
 typedef struct pvtSightQuad {
     uint8_t x0, y0, x1, y1;
 } pvtSightQuad;
 
 /// An orthographic view: a point of the grid lies at pixel (dot(p, right) + x, dot(p, up) + y).
 typedef struct pvtSight {
-    float right[3], up[3];         ///< [px/vx]
-    float x, y;                    ///< [px]
-    float pixelSize;               ///< [vx]
-    float weight;                  ///< of a mean of 1 over the set
-    uint64_t goal[PVT_SIGHT_SIZE]; ///< pixels that what is allowed covers
+    float right[3], up[3]; ///< [px/vx]
+    float x, y;            ///< [px]
+    float pixelSize;       ///< [vx]
+    float weight;          ///< that each of its rectangles has
+    pvtSightMask goal;     ///< pixels that what is allowed covers
     size_t firstQuad, quadCount;
 } pvtSight;
 
 typedef struct pvtSightSet {
     pvtSight* sights; ///< in an order in which any few of them look from all sides
     size_t count;
-    pvtSightQuad* quads; ///< each within the goal of its sight
+    pvtSightQuad* quads; ///< each within the goal of its sight, drawn in proportion to its area
     size_t quadCount;
 } pvtSightSet;
 
 typedef struct pvtSightOptions {
     const pvtViewOptions* views; ///< how to spread them, or the list; `count` is not used
     int count;                   ///< of the sights
-    int quads;                   ///< that are drawn at random on each screen, whole or not
+    int quads;                   ///< that are drawn of each goal, whether they fit into it or not
     uint64_t seed;
 } pvtSightOptions;
 
 pvtStatus pvtCreateSights(pvtContext* context, const pvtSightOptions* options,
                           const pvtField* field, pvtSightSet* set);
+/// Draws rectangles of whole cells, in proportion to their area, and keeps those within the cells
+/// that are set in `rows`: fewer than `draws`, which `quads` has room for. Returns how many;
+/// `weight` tells what each counts, as part of what pvtEvaluateOccluders counts on any screen.
+size_t pvtDrawSightQuads(const uint64_t rows[PVT_SIGHT_CELLS], int draws, pvtRandom* random,
+                         pvtSightQuad* quads, double* weight);
 void pvtSightSet_Free(pvtContext* context, pvtSightSet* set);
 
 #endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// A mesh of no more triangles than the budget is an occluder of itself, once it is inside: for a
+// box nothing is better. What hides no more than the climbs do is not kept.
+#include "ascent_state.h"
+
+#include "base/context.h"
+#include "base/vector.h"
+#include "voxel/bit_grid.h"
+
+#include <math.h>
+#include <string.h>
+
+// The middle of the node that is deepest inside, where a triangle without any extent is inside.
+static void FindDeepest(const pvtField* field, float place[3])
+{
+    int deepest = -PVT_FIELD_STEPS * PVT_FIELD_BAND - 1;
+    for (int z = 0; z < field->size[2]; ++z) {
+        for (int y = 0; y < field->size[1]; ++y) {
+            for (int x = 0; x < field->size[0]; ++x) {
+                const int depth = pvtField_GetNode(field, x, y, z);
+                if (depth > deepest) {
+                    const int node[3] = {x, y, z};
+                    deepest = depth;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        place[axis] = ((float)node[axis] + 0.5F) * (float)field->nodeSize;
+                    }
+                }
+            }
+        }
+    }
+}
+
+static void GetMiddleAndNormal(const pvtTriangleSet* set, const uint32_t corners[3],
+                               pvtVec3* middle, pvtVec3* normal)
+{
+    pvtVec3 places[3];
+    for (int k = 0; k < 3; ++k) {
+        const float* place = set->corners[corners[k]];
+        places[k] = (pvtVec3){(double)place[0], (double)place[1], (double)place[2]};
+    }
+    *middle = pvtScale(pvtAdd(places[0], pvtAdd(places[1], places[2])), 1.0 / 3.0);
+    *normal = pvtNormalize(pvtCross(pvtSub(places[1], places[0]), pvtSub(places[2], places[0])));
+}
+
+// Of the start's polygons the one that a triangle is most like.
+static int32_t FindTag(const pvtAscent* ascent, const uint32_t corners[3])
+{
+    const pvtTriangleSet* start = &ascent->start;
+    const double longest = pvtGetLongestSide(ascent->frame.size);
+    pvtVec3 middle, normal;
+    GetMiddleAndNormal(&ascent->set, corners, &middle, &normal);
+    double most = -HUGE_VAL;
+    int32_t tag = 0;
+    for (int t = 0; t < start->triangleCount; ++t) {
+        pvtVec3 at, facing;
+        GetMiddleAndNormal(start, start->triangles[t], &at, &facing);
+        const double likeness =
+            fabs(pvtDot(normal, facing)) - pvtLength3(pvtSub(at, middle)) / longest;
+        if (likeness > most) {
+            most = likeness;
+            tag = start->tags[t];
+        }
+    }
+    return tag;
+}
+
+static void TakeMesh(const pvtMesh* mesh, pvtAscent* ascent)
+{
+    pvtTriangleSet* set = &ascent->set;
+    float anchor[3] = {0};
+    FindDeepest(&ascent->field, anchor);
+    set->cornerCount = set->triangleCount = 0;
+    for (size_t c = 0; c < mesh->positionCount; ++c) {
+        const pvtVec3 at = pvtToGrid(&ascent->frame, mesh->positions[c]);
+        const float place[3] = {(float)at.x, (float)at.y, (float)at.z};
+        memcpy(set->anchors[pvtTriangleSet_AddCorner(set, place, false)], anchor, sizeof anchor);
+    }
+    for (size_t t = 0; t < mesh->triangleCount; ++t) {
+        const uint32_t* corners = mesh->indices + 3 * t;
+        pvtTriangleSet_AddTriangle(set, corners, FindTag(ascent, corners));
+    }
+    pvtTriangleSet_FindEdges(set);
+}
+
+pvtStatus pvtAscent_TakeMesh(pvtContext* context, pvtAscent* ascent, bool* isTaken)
+{
+    const pvtMesh* mesh = ascent->options->mesh;
+    *isTaken = mesh != NULL && mesh->triangleCount <= (size_t)ascent->options->budget;
+    if (!*isTaken) {
+        return PVT_OK;
+    }
+    pvtMesh welded;
+    const pvtStatus status = pvtWeldMesh(context, mesh, &welded);
+    if (status == PVT_OK) {
+        TakeMesh(&welded, ascent);
+        pvtMesh_Free(context, &welded);
+    }
+    return status;
+}
