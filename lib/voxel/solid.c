@@ -77,7 +77,8 @@ static void WarnWhenHollow(pvtContext* context, const pvtSolid* solid)
     if (remedy->smallestHole > 0.0) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, because the surface has "
-               "openings; --smallest-hole %g (%.1f voxels)%s would close it",
+               "openings; unless these are doors or windows, --smallest-hole %g (%.1f voxels)%s "
+               "closes them",
                percent, remedy->smallestHole, voxels, remedy->ground ? " and --ground" : "");
     } else if (remedy->ground) {
         pvtLog(context, PVT_LOG_WARNING,
