@@ -13,11 +13,11 @@
 // The middle of the node that is deepest inside, where a triangle without any extent is inside.
 static void FindDeepest(const pvtField* field, float place[3])
 {
-    int deepest = -PVT_FIELD_STEPS * PVT_FIELD_BAND - 1;
+    int8_t deepest = INT8_MIN;
     for (int z = 0; z < field->size[2]; ++z) {
         for (int y = 0; y < field->size[1]; ++y) {
             for (int x = 0; x < field->size[0]; ++x) {
-                const int depth = pvtField_GetNode(field, x, y, z);
+                const int8_t depth = pvtField_GetNode(field, x, y, z);
                 if (depth > deepest) {
                     const int node[3] = {x, y, z};
                     deepest = depth;
