@@ -51,11 +51,12 @@ typedef struct pvtSightOptions {
 
 pvtStatus pvtCreateSights(pvtContext* context, const pvtSightOptions* options,
                           const pvtField* field, pvtSightSet* set);
-/// Draws rectangles of whole cells, in proportion to their area, and keeps those within the cells
-/// that are set in `rows`: fewer than `draws`, which `quads` has room for. Returns how many;
-/// `weight` tells what each counts, as part of what pvtEvaluateOccluders counts on any screen.
+void pvtSightSet_Free(pvtContext* context, pvtSightSet* set);
+
+/// Draws rectangles in proportion to their area, and keeps those within the cells that are set in
+/// `rows`: at most `draws`, which `quads` has room for. Returns how many. `weight` tells what each
+/// counts, such that sums over screens of any shape are those of pvtEvaluateOccluders.
 size_t pvtDrawSightQuads(const uint64_t rows[PVT_SIGHT_CELLS], int draws, pvtRandom* random,
                          pvtSightQuad* quads, double* weight);
-void pvtSightSet_Free(pvtContext* context, pvtSightSet* set);
 
 #endif

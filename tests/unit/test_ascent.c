@@ -195,6 +195,54 @@ static void sums_of_cells_count_pixels(void** state)
     }
 }
 
+static bool AreCellsSet(const uint64_t rows[PVT_SIGHT_CELLS], const pvtSightQuad* quad)
+{
+    bool areSet = true;
+    for (int y = quad->y0; y < quad->y1; ++y) {
+        for (int x = quad->x0; x < quad->x1; ++x) {
+            areSet = areSet && (rows[y] >> x & 1) != 0;
+        }
+    }
+    return areSet;
+}
+
+// An angle of seven cells, at the border of the screen: each rectangle within it comes up as often
+// as its area tells, and all of them weigh what they should.
+static void rectangles_come_up_as_often_as_they_are_large(void** state)
+{
+    (void)state;
+    enum { LEFT = 60, ARM = 4, DRAWS = 200000 };
+    uint64_t rows[PVT_SIGHT_CELLS] = {0};
+    rows[0] = UINT64_C(0xF) << LEFT;
+    rows[1] = rows[2] = rows[3] = UINT64_C(1) << LEFT;
+    static pvtSightQuad quads[DRAWS];
+    double weight = 0.0;
+    pvtRandom random = pvtMakeRandom(3, 8);
+    const size_t count = pvtDrawSightQuads(rows, DRAWS, &random, quads, &weight);
+    int tallies[ARM][ARM + 1][ARM][ARM + 1] = {{{{0}}}};
+    for (size_t q = 0; q < count; ++q) {
+        assert_true(AreCellsSet(rows, &quads[q]));
+        ++tallies[quads[q].x0 - LEFT][quads[q].x1 - LEFT][quads[q].y0][quads[q].y1];
+    }
+    int all = 0;
+    const double each = weight * ARM * ARM * ARM * ARM * ARM * ARM; // (w × h × longer)²
+    for (int i = 0; i < ARM * ARM * ARM * ARM; ++i) {
+        const int x0 = i % ARM, y0 = i / ARM % ARM;
+        const int x1 = i / (ARM * ARM) % ARM + 1, y1 = i / (ARM * ARM * ARM) + 1;
+        const pvtSightQuad quad = {(uint8_t)(LEFT + x0), (uint8_t)y0, (uint8_t)(LEFT + x1),
+                                   (uint8_t)y1};
+        if (x0 < x1 && y0 < y1 && AreCellsSet(rows, &quad)) {
+            const double area = (x1 - x0) * (y1 - y0);
+            CHECK_NEAR(each * tallies[x0][x1][y0][y1] / area, 1.0, 0.05);
+            ++all;
+        }
+    }
+    assert_int_equal(all, 19); // ten in each arm, of which the corner's cell is the same
+    rows[0] = rows[1] = rows[2] = rows[3] = 0;
+    assert_int_equal(pvtDrawSightQuads(rows, DRAWS, &random, quads, &weight), 0);
+    assert_true(weight == 0.0);
+}
+
 // Left of all three edges, or right of all; 0 when that may be rounded away.
 static int FindSide(float (*places)[2], float x, float y)
 {
@@ -689,6 +737,7 @@ int main(void)
         cmocka_unit_test(sights_see_a_disc_and_draw_their_rectangles_within_it),
         cmocka_unit_test(following_the_pull_hides_more),
         cmocka_unit_test(sums_of_cells_count_pixels),
+        cmocka_unit_test(rectangles_come_up_as_often_as_they_are_large),
         cmocka_unit_test(triangles_cover_the_pixels_whose_centres_they_hold),
         cmocka_unit_test(what_another_covers_as_well_is_worth_nothing_alone),
         cmocka_unit_test(one_look_tells_less_than_all),
