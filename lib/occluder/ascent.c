@@ -49,6 +49,15 @@ void pvtAscent_GetTriangle(const pvtAscent* ascent, int triangle, pvtVec3 corner
     }
 }
 
+void pvtAscent_AddCorners(pvtAscent* ascent, const pvtMesh* mesh)
+{
+    for (size_t c = 0; c < mesh->positionCount; ++c) {
+        const pvtVec3 at = pvtToGrid(&ascent->frame, mesh->positions[c]);
+        pvtTriangleSet_AddCorner(&ascent->set, (float[3]){(float)at.x, (float)at.y, (float)at.z},
+                                 false);
+    }
+}
+
 static void FreeAscent(pvtContext* context, pvtAscent* ascent)
 {
     pvtTriangleSet_Free(context, &ascent->set);
@@ -72,11 +81,7 @@ static pvtStatus TakeTriangles(pvtContext* context, const pvtOccluder* occluder,
     if (status != PVT_OK) {
         return status;
     }
-    for (size_t c = 0; c < mesh.positionCount; ++c) {
-        const pvtVec3 at = pvtToGrid(&occluder->frame, mesh.positions[c]);
-        pvtTriangleSet_AddCorner(&ascent->set, (float[3]){(float)at.x, (float)at.y, (float)at.z},
-                                 false);
-    }
+    pvtAscent_AddCorners(ascent, &mesh);
     const pvtSheetSet* sheets = ascent->options->sheets;
     const size_t* starts = occluder->loops.starts;
     size_t triangle = 0;

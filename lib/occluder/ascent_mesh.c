@@ -13,17 +13,17 @@
 // The middle of the node that is deepest inside, where a triangle without any extent is inside.
 static void FindDeepest(const pvtField* field, float place[3])
 {
+    const float side = (float)field->nodeSize;
     int8_t deepest = INT8_MIN;
     for (int z = 0; z < field->size[2]; ++z) {
         for (int y = 0; y < field->size[1]; ++y) {
             for (int x = 0; x < field->size[0]; ++x) {
                 const int8_t depth = pvtField_GetNode(field, x, y, z);
                 if (depth > deepest) {
-                    const int node[3] = {x, y, z};
                     deepest = depth;
-                    for (int axis = 0; axis < 3; ++axis) {
-                        place[axis] = ((float)node[axis] + 0.5F) * (float)field->nodeSize;
-                    }
+                    place[0] = ((float)x + 0.5F) * side;
+                    place[1] = ((float)y + 0.5F) * side;
+                    place[2] = ((float)z + 0.5F) * side;
                 }
             }
         }
@@ -70,10 +70,9 @@ static void TakeMesh(const pvtMesh* mesh, pvtAscent* ascent)
     float anchor[3] = {0};
     FindDeepest(&ascent->field, anchor);
     set->cornerCount = set->triangleCount = 0;
-    for (size_t c = 0; c < mesh->positionCount; ++c) {
-        const pvtVec3 at = pvtToGrid(&ascent->frame, mesh->positions[c]);
-        const float place[3] = {(float)at.x, (float)at.y, (float)at.z};
-        memcpy(set->anchors[pvtTriangleSet_AddCorner(set, place, false)], anchor, sizeof anchor);
+    pvtAscent_AddCorners(ascent, mesh);
+    for (int c = 0; c < set->cornerCount; ++c) {
+        memcpy(set->anchors[c], anchor, sizeof anchor);
     }
     for (size_t t = 0; t < mesh->triangleCount; ++t) {
         const uint32_t* corners = mesh->indices + 3 * t;

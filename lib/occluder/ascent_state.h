@@ -30,6 +30,8 @@ typedef struct pvtAscent {
     float reach;    ///< [vx] of a step
 } pvtAscent;
 
+/// Adds the mesh's positions [wu] to the corners of `set`, each anchored where it is.
+void pvtAscent_AddCorners(pvtAscent* ascent, const pvtMesh* mesh);
 /// Where the mesh has no more triangles than the budget, `set` becomes these, on the surface.
 pvtStatus pvtAscent_TakeMesh(pvtContext* context, pvtAscent* ascent, bool* isTaken);
 /// Takes away the least useful triangles, one after the other, until `count` are left.

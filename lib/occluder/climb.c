@@ -220,7 +220,8 @@ static pvtStatus RunClimb(pvtContext* context, pvtAscent* ascent, int attempt, b
     return KeepIfBetter(context, ascent);
 }
 
-// From the mesh itself. Pushed inside it is crooked, and goes back as far as it can.
+// From the mesh itself. Pushed inside it is crooked, and goes back as far as it can; there it is
+// anchored when it settles once more.
 static pvtStatus TryMesh(pvtContext* context, pvtAscent* ascent)
 {
     const pvtTriangleSet* set = &ascent->set;

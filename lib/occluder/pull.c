@@ -75,11 +75,6 @@ pvtStatus pvtCreatePuller(pvtContext* context, const pvtSightSet* sights, const 
     return PVT_OK;
 }
 
-static size_t GetSightIndex(const pvtPuller* puller, size_t b)
-{
-    return (puller->options.first + b) % puller->sights->count;
-}
-
 PVT_VECTOR_CLONES
 static void SumColumns(float (*restrict values)[STRIDE])
 {
@@ -250,7 +245,7 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
     float places[PVT_MOST_SIGHT_CORNERS][2];
     Lack lack;
     for (size_t b = begin; b < end; ++b) {
-        const pvtSight* sight = &puller->sights->sights[GetSightIndex(puller, b)];
+        const pvtSight* sight = pvtPuller_GetSight(puller, b);
         pvtSightMask covered = {0}, missing;
         pvtProjectCorners(sight, set, places);
         for (int t = 0; t < set->triangleCount; ++t) {
@@ -275,7 +270,7 @@ static void SumPulls(const pvtPuller* puller, const float (*pulls)[2], size_t st
 {
     memset(sums, 0, (size_t)count * sizeof *sums);
     for (size_t b = 0; b < (size_t)puller->options.count; ++b) {
-        const pvtSight* sight = &puller->sights->sights[GetSightIndex(puller, b)];
+        const pvtSight* sight = pvtPuller_GetSight(puller, b);
         const float(*from)[2] = pulls + b * stride;
         for (int i = 0; i < count; ++i) {
             for (int axis = 0; axis < 3; ++axis) {
@@ -303,7 +298,7 @@ void pvtPullCorners(pvtContext* context, const pvtPullOptions* options, pvtPulle
     }
     double worth = 0.0, most = 0.0;
     for (size_t b = 0; b < (size_t)options->count; ++b) {
-        const double weight = (double)puller->sights->sights[GetSightIndex(puller, b)].weight;
+        const double weight = (double)pvtPuller_GetSight(puller, b)->weight;
         worth += weight * puller->worth[b];
         most += weight * puller->most[b];
     }

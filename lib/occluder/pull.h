@@ -47,6 +47,12 @@ pvtStatus pvtCreatePuller(pvtContext* context, const pvtSightSet* sights, const 
                           pvtPuller* puller);
 void pvtPuller_Free(pvtContext* context, pvtPuller* puller);
 
+/// The sight that comes `b` after the first of the options.
+static inline const pvtSight* pvtPuller_GetSight(const pvtPuller* puller, size_t b)
+{
+    return &puller->sights->sights[(puller->options.first + b) % puller->sights->count];
+}
+
 /// Fills `share`, `corners` unless they are not wanted, and, if wanted, `edges`.
 void pvtPullCorners(pvtContext* context, const pvtPullOptions* options, pvtPuller* puller);
 /// Fills `triangles`, for at least a quarter of them, those that cover the fewest pixels alone; it

@@ -14,12 +14,6 @@ enum { SIZE = PVT_SIGHT_SIZE, HALVES = PVT_SIGHT_WORDS };
 
 enum { LEAST_CHOICE = 8 }; // triangles that are weighed at least
 
-static const pvtSight* GetSight(const pvtPuller* puller, size_t b)
-{
-    const pvtSightSet* sights = puller->sights;
-    return &sights->sights[(puller->options.first + b) % sights->count];
-}
-
 static size_t GetIndex(const pvtPuller* puller, size_t b, int triangle)
 {
     return b * (size_t)puller->set->triangleCapacity + (size_t)triangle;
@@ -30,7 +24,7 @@ static int FindSingles(const pvtPuller* puller, size_t b, int triangle, pvtSight
 {
     const pvtSightMask* mask = &puller->masks[GetIndex(puller, b, triangle)];
     const pvtSightMask* twice = &puller->layers[b][1];
-    const pvtSightMask* goal = &GetSight(puller, b)->goal;
+    const pvtSightMask* goal = &pvtPuller_GetSight(puller, b)->goal;
     int count = 0;
     for (int half = 0; half < HALVES; ++half) {
         for (int y = 0; y < SIZE; ++y) {
@@ -65,7 +59,7 @@ static void DrawMasks(size_t begin, size_t end, int worker, void* taskData)
     const pvtTriangleSet* set = puller->set;
     float places[PVT_MOST_SIGHT_CORNERS][2];
     for (size_t b = begin; b < end; ++b) {
-        pvtProjectCorners(GetSight(puller, b), set, places);
+        pvtProjectCorners(pvtPuller_GetSight(puller, b), set, places);
         memset(puller->layers[b], 0, sizeof puller->layers[b]);
         for (int t = 0; t < set->triangleCount; ++t) {
             pvtSightMask* mask = &puller->masks[GetIndex(puller, b, t)];
@@ -95,7 +89,7 @@ static void WeighSights(size_t begin, size_t end, int worker, void* taskData)
     pvtPuller* puller = taskData;
     const float softness = puller->options.softness;
     for (size_t b = begin; b < end; ++b) {
-        const pvtSight* sight = GetSight(puller, b);
+        const pvtSight* sight = pvtPuller_GetSight(puller, b);
         pvtSightMask missing, lacking;
         pvtFindMissing(&sight->goal, &puller->layers[b][0], &missing);
         const double worth = pvtSumWorths(puller->sights, sight, &missing, softness);
@@ -119,7 +113,8 @@ static void ChooseTriangles(pvtPuller* puller)
     for (int t = 0; t < count; ++t) {
         double sum = 0.0;
         for (size_t b = 0; b < (size_t)puller->options.count; ++b) {
-            sum += (double)GetSight(puller, b)->weight * puller->singles[GetIndex(puller, b, t)];
+            sum += (double)pvtPuller_GetSight(puller, b)->weight *
+                   puller->singles[GetIndex(puller, b, t)];
         }
         puller->triangles[t] = sum;
         puller->isWeighed[t] = false;
