@@ -7,6 +7,9 @@
 // A change is kept when it raises what the triangles hide of all rectangles on the screen, first
 // seen from the views that are optimised for, then from others too. Without the second look the
 // search finds gaps so narrow that they fall between the pixels of all the views that it knows.
+//
+// At the end each corner is tried along the edges that end at it. On a wall a triangle grows no
+// other way without leaving it, so that of a box nearly all is covered in the end.
 #include "bend.h"
 
 #include "base/context.h"
@@ -18,10 +21,12 @@
 
 #include <math.h>
 
-enum { BATCH = 8, STEPS = 3, JOIN_CHOICES = 3 };
+enum { BATCH = 8, STEPS = 3, JOIN_CHOICES = 3, GROWTHS = 6 };
 
 static const double RELINKS = 0.08;      // of the trials
 static const double BOTH_ENDS = 0.1;     // of the moves: of an edge
+static const double ALONG_EDGES = 0.7;   // of the moves: along an edge of the triangle
+static const double SHORTER = 0.2;       // of these: so that the edge gets shorter
 static const double REACH = 0.08;        // of the longest side: the farthest step
 static const double MOST_HALVINGS = 6.6; // of the reach: to about a hundredth
 static const double STEP_FACTOR = 0.4;   // from one attempt to the next
@@ -37,9 +42,10 @@ typedef struct Bending {
     pvtFacets facets;
     pvtGridFrame frame;
     double reach; // [wu]
-    double rest;  // of the trials: 1 at first, 0 at the end
+    double rest;  // of the trials at random: 1 at first, 0 at the end
     Trial trials[BATCH];
-    uint64_t next; // number of the batch's first trial: its dice
+    uint64_t next;       // number of the batch's first trial: its dice
+    uint64_t begin, end; // numbers of the sweeps' trials, which come after the random ones
 } Bending;
 
 // Close to a normal distribution: the sum of four even ones.
@@ -144,20 +150,22 @@ static pvtVec3 DrawStep(const Bending* bending, pvtRandom* random)
     return pvtScale((pvtVec3){x, y, z}, size * bending->reach);
 }
 
-static bool TryMove(const Bending* bending, pvtRandom* random, pvtFacetChange* change)
+// A step as long as `step`, away from another corner or towards it: what lies along a wall stays
+// there, and grows.
+static pvtVec3 TurnAlongEdge(pvtVec3 step, pvtVec3 corner, pvtVec3 other, pvtRandom* random)
+{
+    const double length = pvtLength3(step);
+    const double sign = pvtRandom_Unit(random) < SHORTER ? -1.0 : 1.0;
+    return pvtScale(pvtNormalize(pvtSub(corner, other)), sign * length);
+}
+
+// Moves corners by a step, or by a part of it.
+static bool TryStep(const Bending* bending, pvtVec3 step, pvtFacetChange* change)
 {
     const pvtMesh* mesh = &bending->facets.mesh;
-    const uint32_t* corners =
-        mesh->indices + 3 * pvtRandom_Below(random, (uint32_t)mesh->triangleCount);
-    const uint32_t first = pvtRandom_Below(random, 3);
-    change->movedCount = pvtRandom_Unit(random) < BOTH_ENDS ? 2 : 1;
-    for (uint32_t i = 0; i < 2; ++i) {
-        change->moved[i] = corners[(first + i) % 3];
-    }
     if (!ListTriangles(mesh, change)) {
         return false;
     }
-    pvtVec3 step = DrawStep(bending, random);
     for (int attempt = 0; attempt < STEPS; ++attempt) {
         for (int i = 0; i < change->movedCount; ++i) {
             change->places[i] = RoundPlace(pvtAdd(mesh->positions[change->moved[i]], step));
@@ -168,6 +176,43 @@ static bool TryMove(const Bending* bending, pvtRandom* random, pvtFacetChange* c
         step = pvtScale(step, STEP_FACTOR);
     }
     return false;
+}
+
+static bool TryMove(const Bending* bending, pvtRandom* random, pvtFacetChange* change)
+{
+    const pvtMesh* mesh = &bending->facets.mesh;
+    const uint32_t* corners =
+        mesh->indices + 3 * pvtRandom_Below(random, (uint32_t)mesh->triangleCount);
+    const uint32_t first = pvtRandom_Below(random, 3);
+    change->movedCount = pvtRandom_Unit(random) < BOTH_ENDS ? 2 : 1;
+    for (uint32_t i = 0; i < 2; ++i) {
+        change->moved[i] = corners[(first + i) % 3];
+    }
+    pvtVec3 step = DrawStep(bending, random);
+    if (pvtRandom_Unit(random) < ALONG_EDGES) {
+        // Not along the edge that moves as a whole.
+        const uint32_t way = change->movedCount == 2 || pvtRandom_Unit(random) < 0.5 ? 2 : 1;
+        step = TurnAlongEdge(step, mesh->positions[corners[first]],
+                             mesh->positions[corners[(first + way) % 3]], random);
+    }
+    return TryStep(bending, step, change);
+}
+
+// Each corner of each triangle away from each of the two others. In sweeps, of half the step each
+// time and of a voxel in the last one: random steps seldom find what is left of that.
+static bool TryGrow(const Bending* bending, uint64_t number, pvtFacetChange* change)
+{
+    const pvtMesh* mesh = &bending->facets.mesh;
+    const uint64_t trials = GROWTHS * mesh->triangleCount;
+    const uint64_t sweepsLeft = (bending->end - number - 1) / trials;
+    const uint64_t place = (number - bending->begin) % trials;
+    const uint32_t* corners = mesh->indices + 3 * (place / GROWTHS);
+    const size_t first = place % 3, other = (first + 1 + place % GROWTHS / 3) % 3;
+    const pvtVec3 way = pvtSub(mesh->positions[corners[first]], mesh->positions[corners[other]]);
+    const double size = ldexp(bending->frame.voxelSize, (int)sweepsLeft);
+    change->movedCount = 1;
+    change->moved[0] = corners[first];
+    return TryStep(bending, pvtScale(pvtNormalize(way), size), change);
 }
 
 // A corner that no triangle uses; there is one whenever some triangles share a corner.
@@ -243,11 +288,23 @@ static void RunTrials(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
+static void RunGrowths(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    Bending* bending = taskData;
+    for (size_t i = begin; i < end; ++i) {
+        Trial* trial = &bending->trials[i];
+        trial->change = (pvtFacetChange){0};
+        trial->gains =
+            bending->next + i < bending->end && TryGrow(bending, bending->next + i, &trial->change);
+    }
+}
+
 // As in refine.c: the first that gains is made, and those behind it count as not tried.
 static void RunBatch(pvtContext* context, Bending* bending)
 {
     pvtParallelFor(context, RunTrials, BATCH, 1, bending);
-    for (int i = 0; i < BATCH; ++i) {
+    for (int i = 0; i < BATCH && bending->next < bending->begin; ++i) {
         ++bending->next;
         if (bending->trials[i].gains) {
             pvtApplyFacetChange(context, &bending->facets, &bending->trials[i].change);
@@ -256,22 +313,63 @@ static void RunBatch(pvtContext* context, Bending* bending)
     }
 }
 
+// Makes a move, and takes it back when it does not gain after all.
+static bool MakeMove(pvtContext* context, pvtFacets* facets, pvtFacetChange* change)
+{
+    const double screened = facets->screened, total = facets->total;
+    const pvtVec3 before = facets->mesh.positions[change->moved[0]];
+    pvtApplyFacetChange(context, facets, change);
+    if (facets->screened > screened && facets->total > total) {
+        return true;
+    }
+    change->places[0] = before;
+    pvtApplyFacetChange(context, facets, change);
+    return false;
+}
+
+// Many gain: all are made that have no triangle in common.
+static void RunGrowthBatch(pvtContext* context, Bending* bending)
+{
+    bool isChanged[PVT_MAX_FACETS] = {false};
+    pvtParallelFor(context, RunGrowths, BATCH, 1, bending);
+    for (int i = 0; i < BATCH; ++i) {
+        pvtFacetChange* change = &bending->trials[i].change;
+        bool isMade = bending->trials[i].gains;
+        for (int t = 0; t < change->count; ++t) {
+            isMade = isMade && !isChanged[change->triangles[t]];
+        }
+        isMade = isMade && MakeMove(context, &bending->facets, change);
+        for (int t = 0; t < change->count && isMade; ++t) {
+            isChanged[change->triangles[t]] = true;
+        }
+    }
+    bending->next += BATCH;
+}
+
 static pvtStatus Climb(pvtContext* context, Bending* bending)
 {
     const pvtBendOptions* options = bending->options;
-    while ((double)bending->next < (double)options->trials) {
-        bending->rest = 1.0 - (double)bending->next / options->trials;
-        RunBatch(context, bending);
+    const uint64_t sweep = GROWTHS * bending->facets.mesh.triangleCount;
+    bending->begin = (uint64_t)options->trials;
+    bending->end = bending->begin + (uint64_t)options->sweeps * sweep;
+    while (bending->next < bending->end) {
+        const double done = (double)bending->next / (double)bending->end;
+        if (bending->next < bending->begin) {
+            bending->rest = 1.0 - (double)bending->next / (double)bending->begin;
+            RunBatch(context, bending);
+        } else {
+            RunGrowthBatch(context, bending);
+        }
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
         if (options->deadline > 0.0 && pvtGetSeconds() > options->deadline) {
             pvtLog(context, PVT_LOG_WARNING,
                    "the deadline ended the last refinement after %.0f %% of its trials",
-                   100.0 * (1.0 - bending->rest));
+                   100.0 * done);
             break;
         }
-        pvtReportProgress(context, 1.0 - bending->rest);
+        pvtReportProgress(context, done);
     }
     return PVT_OK;
 }

@@ -12,7 +12,8 @@ typedef struct pvtBendOptions {
     pvtBox3 bounds;          ///< [wu] what the masks span
     const pvtInsideTest* inside;
     uint64_t seed;
-    int trials;      ///< changes that are tried
+    int trials;      ///< random changes that are tried
+    int sweeps;      ///< after them: corners that grow, by a voxel in the last one
     double deadline; ///< on pvtGetSeconds' clock: ends the trials; 0: none
 } pvtBendOptions;
 

@@ -79,13 +79,18 @@ static pvtStatus TakeFlatIfBetter(pvtContext* context, pvtBuild* build)
 
 static pvtStatus Bend(pvtContext* context, pvtBuild* build)
 {
-    static const int trials[] = {
-        [PVT_EFFORT_FAST] = 200, [PVT_EFFORT_DEFAULT] = 3000, [PVT_EFFORT_BEST] = 60000};
+    static const struct {
+        int trials, sweeps;
+    } efforts[] = {[PVT_EFFORT_FAST] = {0, 1},
+                   [PVT_EFFORT_DEFAULT] = {800, 3},
+                   [PVT_EFFORT_BEST] = {60000, 4}};
+    const int effort = (int)build->options->effort;
     pvtBendOptions options = {.views = &build->views,
                               .inside = &build->inside,
                               .bounds = build->bounds,
                               .seed = build->options->seed,
-                              .trials = trials[build->options->effort],
+                              .trials = efforts[effort].trials,
+                              .sweeps = efforts[effort].sweeps,
                               .deadline = pvtGetDeadline(build)};
     pvtViewSet more;
     pvtStatus status = MakeMoreViews(context, build, &more);

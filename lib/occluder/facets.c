@@ -3,6 +3,7 @@
 
 #include "base/context.h"
 #include "base/vector.h"
+#include "base/vectors.h"
 #include "occlusion/rectangles.h"
 #include "occlusion/stride.h"
 
@@ -30,7 +31,7 @@ void pvtFacets_Free(pvtContext* context, pvtFacets* facets)
 
 double pvtGetFacetBytes(size_t triangleCount, size_t viewCount)
 {
-    return (double)viewCount * (double)(triangleCount + 1) * (ROWS * sizeof(uint64_t) + 2);
+    return (double)viewCount * (double)(triangleCount + 1 + LAYERS) * (ROWS * sizeof(uint64_t) + 2);
 }
 
 // A screen is the box around the projected bounds, and rectangles on it are drawn at random: one
@@ -99,38 +100,41 @@ static void AddMask(const pvtFacets* facets, size_t triangle, size_t view, uint6
     }
 }
 
+static uint64_t* GetLayers(const pvtFacets* facets, size_t view)
+{
+    return facets->layers + view * LAYERS * ROWS;
+}
+
+PVT_VECTOR_CLONES
+static void AddToLayers(const uint64_t* restrict added, int first, int end,
+                        uint64_t* restrict layers)
+{
+    for (int y = first; y < end; ++y) {
+        for (int layer = LAYERS - 1; layer > 0; --layer) {
+            layers[layer * ROWS + y] |= layers[(layer - 1) * ROWS + y] & added[y];
+        }
+        layers[y] |= added[y];
+    }
+}
+
 static void CountLayers(const pvtFacets* facets, size_t view)
 {
-    uint64_t(*layers)[LAYERS] = (uint64_t(*)[LAYERS])(facets->layers + view * ROWS * LAYERS);
-    memset(layers, 0, ROWS * sizeof *layers);
+    uint64_t* layers = GetLayers(facets, view);
+    memset(layers, 0, LAYERS * ROWS * sizeof *layers);
     for (size_t t = 0; t < facets->mesh.triangleCount; ++t) {
         const size_t mask = t * facets->viewCount + view;
-        const uint64_t* added = facets->masks + mask * ROWS;
-        for (int y = facets->spans[mask][0]; y < facets->spans[mask][1]; ++y) {
-            for (int layer = LAYERS - 1; layer > 0; --layer) {
-                layers[y][layer] |= layers[y][layer - 1] & added[y];
-            }
-            layers[y][0] |= added[y];
-        }
+        AddToLayers(facets->masks + mask * ROWS, facets->spans[mask][0], facets->spans[mask][1],
+                    layers);
     }
 }
 
 static void CountView(const pvtFacets* facets, size_t view)
 {
-    uint64_t rows[ROWS] = {0};
-    if (view < facets->screenCount) {
-        CountLayers(facets, view);
-        for (size_t y = 0; y < ROWS; ++y) {
-            rows[y] = facets->layers[(view * ROWS + y) * LAYERS];
-        }
-    } else {
-        for (size_t t = 0; t < facets->mesh.triangleCount; ++t) {
-            AddMask(facets, t, view, rows);
-        }
-    }
+    CountLayers(facets, view);
+    const uint64_t* rows = GetLayers(facets, view);
     uint64_t* covered = facets->rows + view * ROWS;
-    if (memcmp(rows, covered, sizeof rows) != 0) {
-        memcpy(covered, rows, sizeof rows);
+    if (memcmp(rows, covered, ROWS * sizeof *rows) != 0) {
+        memcpy(covered, rows, ROWS * sizeof *rows);
         facets->values[view] = facets->factors[view] * (double)pvtSumRectangles(rows);
     }
 }
@@ -176,8 +180,7 @@ static pvtStatus AllocateMasks(pvtContext* context, pvtFacets* facets)
     facets->masks = pvtAllocate(context, masks * ROWS, sizeof *facets->masks);
     facets->spans = pvtAllocate(context, masks, sizeof *facets->spans);
     facets->rows = pvtAllocate(context, views * ROWS, sizeof *facets->rows);
-    facets->layers =
-        pvtAllocate(context, facets->screenCount * ROWS * LAYERS, sizeof *facets->layers);
+    facets->layers = pvtAllocate(context, views * ROWS * LAYERS, sizeof *facets->layers);
     facets->values = pvtAllocate(context, views, sizeof *facets->values);
     return facets->frames == NULL || facets->factors == NULL || facets->masks == NULL ||
                    facets->spans == NULL || facets->rows == NULL || facets->layers == NULL ||
@@ -247,6 +250,7 @@ static void AddOthers(const pvtFacets* facets, const pvtFacetChange* change, siz
 static void TakeFromLayers(const pvtFacets* facets, const pvtFacetChange* change, size_t view,
                            uint64_t* rows)
 {
+    const uint64_t* layers = GetLayers(facets, view);
     uint64_t taken[ROWS][LAYERS - 1];
     int first = ROWS, end = 0;
     for (int i = 0; i < change->count; ++i) {
@@ -269,9 +273,8 @@ static void TakeFromLayers(const pvtFacets* facets, const pvtFacetChange* change
         }
     }
     for (int y = first; y < end; ++y) {
-        const uint64_t* layers = facets->layers + (view * ROWS + (size_t)y) * LAYERS;
-        rows[y] = (layers[0] & ~taken[y][0]) | (layers[1] & ~taken[y][1]) |
-                  (layers[2] & ~taken[y][2]) | layers[3];
+        rows[y] = (layers[y] & ~taken[y][0]) | (layers[ROWS + y] & ~taken[y][1]) |
+                  (layers[2 * ROWS + y] & ~taken[y][2]) | layers[3 * ROWS + y];
     }
 }
 
@@ -279,7 +282,7 @@ static double EvaluateView(const pvtFacets* facets, const pvtFacetChange* change
                            pvtVec3 (*corners)[3], size_t view)
 {
     uint64_t rows[ROWS];
-    if (view < facets->screenCount && change->count < LAYERS) {
+    if (change->count < LAYERS) {
         TakeFromLayers(facets, change, view, rows);
     } else {
         AddOthers(facets, change, view, rows);

@@ -37,6 +37,7 @@ void pvtPuller_Free(pvtContext* context, pvtPuller* puller)
     pvtRelease(context, puller->cornerPulls);
     pvtRelease(context, puller->edgePulls);
     pvtRelease(context, puller->masks);
+    pvtRelease(context, puller->rows);
     pvtRelease(context, puller->layers);
     pvtRelease(context, puller->singles);
     pvtRelease(context, puller->losses);
@@ -58,6 +59,7 @@ pvtStatus pvtCreatePuller(pvtContext* context, const pvtSightSet* sights, const 
     puller->edgePulls =
         pvtAllocate(context, PVT_MOST_BATCH * 3 * triangles, sizeof *puller->edgePulls);
     puller->masks = pvtAllocate(context, PVT_MOST_WEIGHED * triangles, sizeof *puller->masks);
+    puller->rows = pvtAllocate(context, PVT_MOST_WEIGHED * triangles, sizeof *puller->rows);
     puller->layers = pvtAllocate(context, PVT_MOST_WEIGHED, sizeof *puller->layers);
     puller->singles = pvtAllocate(context, PVT_MOST_WEIGHED * triangles, sizeof *puller->singles);
     puller->isWeighed = pvtAllocate(context, triangles, sizeof *puller->isWeighed);
@@ -66,9 +68,9 @@ pvtStatus pvtCreatePuller(pvtContext* context, const pvtSightSet* sights, const 
     puller->edges = pvtAllocate(context, 3 * triangles, sizeof *puller->edges);
     puller->triangles = pvtAllocate(context, triangles, sizeof *puller->triangles);
     if (puller->cornerPulls == NULL || puller->edgePulls == NULL || puller->masks == NULL ||
-        puller->losses == NULL || puller->layers == NULL || puller->singles == NULL ||
-        puller->isWeighed == NULL || puller->corners == NULL || puller->edges == NULL ||
-        puller->triangles == NULL) {
+        puller->rows == NULL || puller->losses == NULL || puller->layers == NULL ||
+        puller->singles == NULL || puller->isWeighed == NULL || puller->corners == NULL ||
+        puller->edges == NULL || puller->triangles == NULL) {
         pvtPuller_Free(context, puller);
         return pvtContext_GetStatus(context);
     }

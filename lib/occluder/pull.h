@@ -31,6 +31,7 @@ typedef struct pvtPuller {
     double worth[PVT_MOST_BATCH];
     double most[PVT_MOST_BATCH];
     pvtSightMask* masks;       ///< sight × triangle
+    pvtSightRows* rows;        ///< sight × triangle: the rows that its mask may have pixels in
     pvtSightMask (*layers)[3]; ///< sight × covered at least once, twice, thrice
     uint32_t* singles;         ///< sight × triangle: pixels that no other triangle covers
     float* losses;             ///< sight × triangle

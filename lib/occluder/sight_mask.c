@@ -112,8 +112,8 @@ static void FindSpans(const Spans* spans, int32_t* restrict begins, int32_t* res
     }
 }
 
-void pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2], int triangle, float inset,
-                          pvtSightMask* mask)
+pvtSightRows pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2], int triangle,
+                                  float inset, pvtSightMask* mask)
 {
     const uint32_t* corners = set->triangles[triangle];
     const float* const p[3] = {places[corners[0]], places[corners[1]], places[corners[2]]};
@@ -123,7 +123,7 @@ void pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2], int tri
     }
     Spans spans;
     if (!MakeSpans(p, insets, &spans)) {
-        return;
+        return (pvtSightRows){0, 0};
     }
     int32_t begins[SIZE], ends[SIZE];
     FindSpans(&spans, begins, ends);
@@ -135,6 +135,7 @@ void pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2], int tri
             SetSpans(begins, ends, spans.end - spans.first, from, mask->words[half] + spans.first);
         }
     }
+    return (pvtSightRows){(uint8_t)spans.first, (uint8_t)spans.end};
 }
 
 // How many of each pair of bits are set: eight numbers of 0 to 2, lowest first.

@@ -15,9 +15,9 @@ enum {
 /// [px] where the corners are seen.
 void pvtProjectCorners(const pvtSight* sight, const pvtTriangleSet* set, float (*places)[2]);
 
-/// Adds a triangle, short of its open edges by `inset` [px].
-void pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2], int triangle, float inset,
-                          pvtSightMask* mask);
+/// Adds a triangle, short of its open edges by `inset` [px], and tells the rows that it may cover.
+pvtSightRows pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2], int triangle,
+                                  float inset, pvtSightMask* mask);
 
 /// sums[y][x]: pixels in the cells left of x and below y (PVT_SIGHT_ENDS of each).
 void pvtSumMissing(const pvtSightMask* missing, uint16_t (*restrict sums)[PVT_SIGHT_STRIDE]);

@@ -20,6 +20,11 @@ typedef struct pvtSightMask {
     uint64_t words[PVT_SIGHT_WORDS][PVT_SIGHT_SIZE];
 } pvtSightMask;
 
+/// Rows of a mask, from the first to before the end.
+typedef struct pvtSightRows {
+    uint8_t first, end;
+} pvtSightRows;
+
 /// Cells from x0 to x1 − 1 and from y0 to y1 − 1.
 typedef struct pvtSightQuad {
     uint8_t x0, y0, x1, y1;

@@ -287,23 +287,23 @@ static bool IsPaper(const pvtBuild* build)
     return build->options->method == PVT_METHOD_PAPER;
 }
 
-// How many candidates there are, and over how many views they are chosen.
+// How many candidates there are, from how many planes each is the best, and over how many views
+// they are chosen.
 typedef struct SearchSize {
-    int directions, depths, views;
+    int directions, depths, samplesPerBin, views;
 } SearchSize;
 
 static SearchSize GetSearchSize(const pvtBuild* build)
 {
     const bool isFast = build->options->effort == PVT_EFFORT_FAST;
-    const pvtPlanOptions whole = pvtDefaultPlanOptions();
     // What ascends needs no more than a start, and leaves it far behind.
-    if (isFast && pvtMayAscend(build)) {
-        return (SearchSize){12, 16, 8};
+    if (pvtMayAscend(build)) {
+        return (SearchSize){isFast ? 12 : 16, 16, 4, 8};
     }
+    const pvtPlanOptions whole = pvtDefaultPlanOptions();
     // A third of the candidates: in a short search the others hardly count.
-    return isFast || pvtMayAscend(build)
-               ? (SearchSize){16, 16, 16}
-               : (SearchSize){whole.directions, whole.depths, SELECT_VIEWS};
+    return isFast ? (SearchSize){16, 16, whole.samplesPerBin, 16}
+                  : (SearchSize){whole.directions, whole.depths, whole.samplesPerBin, SELECT_VIEWS};
 }
 
 // What is sliced: the paper slices the solid, and lets simplification stray by the tolerance; the
@@ -336,8 +336,10 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
         options.faces = IsPaper(build) ? NULL : &faces;
         options.axes = !IsPaper(build);
         if (!IsPaper(build)) {
-            options.directions = GetSearchSize(build).directions;
-            options.depths = GetSearchSize(build).depths;
+            const SearchSize size = GetSearchSize(build);
+            options.directions = size.directions;
+            options.depths = size.depths;
+            options.samplesPerBin = size.samplesPerBin;
         }
         status = pvtPlanSections(context, &options, volume->grid, &plan);
     }

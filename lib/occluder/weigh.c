@@ -4,13 +4,14 @@
 
 #include "base/bits.h"
 #include "base/context.h"
+#include "base/vectors.h"
 #include "sight_mask.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-enum { SIZE = PVT_SIGHT_SIZE, HALVES = PVT_SIGHT_WORDS };
+enum { HALVES = PVT_SIGHT_WORDS };
 
 enum { LEAST_CHOICE = 8 }; // triangles that are weighed at least
 
@@ -19,32 +20,43 @@ static size_t GetIndex(const pvtPuller* puller, size_t b, int triangle)
     return b * (size_t)puller->set->triangleCapacity + (size_t)triangle;
 }
 
-// Pixels of the goal that a triangle covers and no other.
-static int FindSingles(const pvtPuller* puller, size_t b, int triangle, pvtSightMask* singles)
+// Pixels of the goal that a triangle covers and no other, of those of its rows.
+PVT_VECTOR_CLONES
+static int CountSingles(const pvtSightMask* restrict mask, const pvtSightMask* restrict twice,
+                        const pvtSightMask* restrict goal, pvtSightRows rows)
 {
-    const pvtSightMask* mask = &puller->masks[GetIndex(puller, b, triangle)];
-    const pvtSightMask* twice = &puller->layers[b][1];
-    const pvtSightMask* goal = &pvtPuller_GetSight(puller, b)->goal;
     int count = 0;
     for (int half = 0; half < HALVES; ++half) {
-        for (int y = 0; y < SIZE; ++y) {
-            const uint64_t here =
-                mask->words[half][y] & ~twice->words[half][y] & goal->words[half][y];
-            singles->words[half][y] = here;
-            count += here != 0 ? pvtCountBits(here) : 0;
+        for (int y = rows.first; y < rows.end; ++y) {
+            count +=
+                pvtCountBits(mask->words[half][y] & ~twice->words[half][y] & goal->words[half][y]);
         }
     }
     return count;
 }
 
-static void AddLayer(pvtSightMask layers[3], const pvtSightMask* mask)
+static void AddSingles(const pvtSightMask* restrict mask, const pvtSightMask* restrict twice,
+                       const pvtSightMask* restrict goal, pvtSightRows rows,
+                       pvtSightMask* restrict singles)
+{
+    for (int half = 0; half < HALVES; ++half) {
+        for (int y = rows.first; y < rows.end; ++y) {
+            singles->words[half][y] |=
+                mask->words[half][y] & ~twice->words[half][y] & goal->words[half][y];
+        }
+    }
+}
+
+PVT_VECTOR_CLONES
+static void AddLayer(const pvtSightMask* restrict mask, pvtSightRows rows,
+                     pvtSightMask layers[restrict 3])
 {
     for (int half = 0; half < HALVES; ++half) {
         uint64_t* once = layers[0].words[half];
         uint64_t* twice = layers[1].words[half];
         uint64_t* thrice = layers[2].words[half];
         const uint64_t* added = mask->words[half];
-        for (int y = 0; y < SIZE; ++y) {
+        for (int y = rows.first; y < rows.end; ++y) {
             thrice[y] |= twice[y] & added[y];
             twice[y] |= once[y] & added[y];
             once[y] |= added[y];
@@ -59,26 +71,20 @@ static void DrawMasks(size_t begin, size_t end, int worker, void* taskData)
     const pvtTriangleSet* set = puller->set;
     float places[PVT_MOST_SIGHT_CORNERS][2];
     for (size_t b = begin; b < end; ++b) {
-        pvtProjectCorners(pvtPuller_GetSight(puller, b), set, places);
-        memset(puller->layers[b], 0, sizeof puller->layers[b]);
+        const pvtSight* sight = pvtPuller_GetSight(puller, b);
+        pvtSightMask* masks = &puller->masks[GetIndex(puller, b, 0)];
+        pvtSightRows* rows = &puller->rows[GetIndex(puller, b, 0)];
+        pvtSightMask* layers = puller->layers[b];
+        pvtProjectCorners(sight, set, places);
+        memset(layers, 0, sizeof puller->layers[b]);
+        memset(masks, 0, (size_t)set->triangleCount * sizeof *masks);
         for (int t = 0; t < set->triangleCount; ++t) {
-            pvtSightMask* mask = &puller->masks[GetIndex(puller, b, t)];
-            memset(mask, 0, sizeof *mask);
-            pvtDrawSightTriangle(set, places, t, puller->options.inset, mask);
-            AddLayer(puller->layers[b], mask);
+            rows[t] = pvtDrawSightTriangle(set, places, t, puller->options.inset, &masks[t]);
+            AddLayer(&masks[t], rows[t], layers);
         }
         for (int t = 0; t < set->triangleCount; ++t) {
-            pvtSightMask singles;
-            puller->singles[GetIndex(puller, b, t)] = (uint32_t)FindSingles(puller, b, t, &singles);
-        }
-    }
-}
-
-static void AddMissing(const pvtSightMask* missing, pvtSightMask* lacking)
-{
-    for (int half = 0; half < HALVES; ++half) {
-        for (int y = 0; y < SIZE; ++y) {
-            lacking->words[half][y] |= missing->words[half][y];
+            puller->singles[GetIndex(puller, b, t)] =
+                (uint32_t)CountSingles(&masks[t], &layers[1], &sight->goal, rows[t]);
         }
     }
 }
@@ -90,16 +96,19 @@ static void WeighSights(size_t begin, size_t end, int worker, void* taskData)
     const float softness = puller->options.softness;
     for (size_t b = begin; b < end; ++b) {
         const pvtSight* sight = pvtPuller_GetSight(puller, b);
-        pvtSightMask missing, lacking;
-        pvtFindMissing(&sight->goal, &puller->layers[b][0], &missing);
+        const pvtSightMask* layers = puller->layers[b];
+        pvtSightMask missing;
+        pvtFindMissing(&sight->goal, &layers[0], &missing);
         const double worth = pvtSumWorths(puller->sights, sight, &missing, softness);
         for (int t = 0; t < puller->set->triangleCount; ++t) {
-            float* loss = &puller->losses[GetIndex(puller, b, t)];
-            *loss = 0.0F;
-            if (puller->isWeighed[t] && FindSingles(puller, b, t, &lacking) > 0) {
-                AddMissing(&missing, &lacking);
-                *loss = (float)(worth - pvtSumWorths(puller->sights, sight, &lacking, softness)) *
-                        sight->weight;
+            const size_t index = GetIndex(puller, b, t);
+            puller->losses[index] = 0.0F;
+            if (puller->isWeighed[t] && puller->singles[index] > 0) {
+                pvtSightMask lacking = missing;
+                AddSingles(&puller->masks[index], &layers[1], &sight->goal, puller->rows[index],
+                           &lacking);
+                const double left = pvtSumWorths(puller->sights, sight, &lacking, softness);
+                puller->losses[index] = (float)(worth - left) * sight->weight;
             }
         }
     }
@@ -147,11 +156,12 @@ void pvtWeighTriangles(pvtContext* context, const pvtPullOptions* options, pvtPu
     }
 }
 
-static bool CoverTogether(const pvtSightMask* a, const pvtSightMask* b, const pvtSightMask* thrice)
+static bool CoverTogether(const pvtSightMask* a, const pvtSightMask* b, const pvtSightMask* thrice,
+                          pvtSightRows rows)
 {
     uint64_t both = 0;
     for (int half = 0; half < HALVES; ++half) {
-        for (int y = 0; y < SIZE; ++y) {
+        for (int y = rows.first; y < rows.end; ++y) {
             both |= a->words[half][y] & b->words[half][y] & ~thrice->words[half][y];
         }
     }
@@ -161,8 +171,9 @@ static bool CoverTogether(const pvtSightMask* a, const pvtSightMask* b, const pv
 bool pvtArePartners(const pvtPuller* puller, int a, int b)
 {
     for (size_t s = 0; s < (size_t)puller->options.count; ++s) {
-        if (CoverTogether(&puller->masks[GetIndex(puller, s, a)],
-                          &puller->masks[GetIndex(puller, s, b)], &puller->layers[s][2])) {
+        const size_t i = GetIndex(puller, s, a), j = GetIndex(puller, s, b);
+        if (CoverTogether(&puller->masks[i], &puller->masks[j], &puller->layers[s][2],
+                          puller->rows[i])) {
             return true;
         }
     }

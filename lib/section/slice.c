@@ -422,18 +422,30 @@ PVT_VECTOR_CLONES static void SliceCellWord(const CellSlicing* slicing, int v, s
     }
 }
 
-// At one cell a voxel all patches over it must be covered.
+// At one cell a voxel all patches over it must be covered: so no voxel that they touch may be
+// clear.
 PVT_VECTOR_CLONES static void SliceVoxelWord(const CellSlicing* slicing, int v, size_t w,
                                              pvtBitmap* slice)
 {
-    uint64_t* word = &slice->words[(size_t)v * slice->wordsPerRow + w];
-    uint64_t others;
-    FindColumns(slicing, v, w, word, &others);
-    for (; others != 0; others &= others - 1) {
+    const Slicing* whole = &slicing->whole;
+    const Slicing* partly = &slicing->partly;
+    const int64_t rise = whole->stepV * v + whole->stepU * COLUMNS * (int64_t)w;
+    const size_t column = (size_t)v * whole->columns->wordsPerRow + w;
+    uint64_t covered = ~UINT64_C(0), possible = ~UINT64_C(0);
+    for (int i = 0; i < whole->sampleCount && possible != 0; ++i) {
+        const uint64_t set = SliceColumn(whole, column, whole->samples[i] + rise);
+        covered &= set;
+        if (set != ~UINT64_C(0)) {
+            possible &= set | SliceColumn(partly, column, partly->samples[i] + rise);
+        }
+    }
+    covered &= possible;
+    for (uint64_t others = possible & ~covered; others != 0; others &= others - 1) {
         const int bit = __builtin_ctzll(others);
         const bool all = JudgePatches(slicing, (int)(w * COLUMNS) + bit, v) == 0xFFFF;
-        *word |= (uint64_t)all << bit;
+        covered |= (uint64_t)all << bit;
     }
+    slice->words[(size_t)v * slice->wordsPerRow + w] = covered;
 }
 
 static int ClampInto(int value, int most)

@@ -217,7 +217,7 @@ typedef struct Bent {
     uint64_t outside;
 } Bent;
 
-static void Bend(pvtContext* context, Bent* bent)
+static void Bend(pvtContext* context, int trials, int sweeps, Bent* bent)
 {
     pvtRandom random = pvtMakeRandom(11, 6);
     pvtBitGrid grid;
@@ -235,7 +235,8 @@ static void Bend(pvtContext* context, Bent* bent)
                                     .bounds = {{4, 4, 4}, {SIDE - 4, SIDE - 4, SIDE - 4}},
                                     .inside = &inside,
                                     .seed = 1,
-                                    .trials = 1200};
+                                    .trials = trials,
+                                    .sweeps = sweeps};
     const pvtFacetOptions measured = {&views, &more, options.bounds};
     pvtFacets facets;
     CHECK_OK(context, pvtCreateFacets(context, &measured, &bent->occluder.mesh, &facets));
@@ -255,17 +256,30 @@ static void Bend(pvtContext* context, Bent* bent)
     pvtBitGrid_Free(context, &grid);
 }
 
+static void CheckBent(const Bent* bent, double gain)
+{
+    assert_true(bent->occluder.mesh.triangleCount == TRIANGLES);
+    assert_true(bent->outside == 0);
+    assert_true(bent->after[0] > gain * bent->before[0]);
+    assert_true(bent->after[1] > gain * bent->before[1]);
+}
+
 static void bending_hides_more_with_no_more_triangles_and_stays_inside(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
-    Bent bent;
-    Bend(context, &bent);
-    assert_true(bent.occluder.mesh.triangleCount == TRIANGLES);
-    assert_true(bent.outside == 0);
-    assert_true(bent.after[0] > 1.2 * bent.before[0]);
-    assert_true(bent.after[1] > 1.2 * bent.before[1]);
-    pvtOccluder_Free(context, &bent.occluder);
+    Bent drawn, swept, both;
+    Bend(context, 1200, 0, &drawn);
+    Bend(context, 0, 3, &swept);
+    Bend(context, 1200, 1, &both);
+    CheckBent(&drawn, 1.2);
+    // Steps of 4, 2 and 1 voxels.
+    CheckBent(&swept, 1.05);
+    // Where random steps have left off there is something left.
+    CheckBent(&both, drawn.after[1] / drawn.before[1]);
+    pvtOccluder_Free(context, &drawn.occluder);
+    pvtOccluder_Free(context, &swept.occluder);
+    pvtOccluder_Free(context, &both.occluder);
     DestroyTestContext(context);
 }
 
@@ -276,8 +290,8 @@ static void threads_do_not_change_how_triangles_bend(void** state)
     pvtContext* many = CreateTestContext(5);
     Bent a;
     Bent b;
-    Bend(one, &a);
-    Bend(many, &b);
+    Bend(one, 600, 2, &a);
+    Bend(many, 600, 2, &b);
     assert_true(a.occluder.mesh.positionCount == b.occluder.mesh.positionCount);
     assert_memory_equal(a.occluder.mesh.positions, b.occluder.mesh.positions,
                         a.occluder.mesh.positionCount * sizeof(pvtVec3));

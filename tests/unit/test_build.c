@@ -45,9 +45,10 @@ static pvtBuildOptions GetQuickOptions(void)
 
 // What of the original the occluder leaves uncovered is nowhere thicker than `most` [wu].
 static void CheckUncovered(pvtContext* context, const pvtMesh* original, const pvtMesh* occluder,
-                           double most)
+                           int pixels, double most)
 {
     pvtEvaluateOptions options = pvtDefaultEvaluateOptions();
+    options.pixels = pixels;
     options.views = 64;
     options.quads = 1;
     pvtEvaluation evaluation;
@@ -64,22 +65,31 @@ static void a_cube_at_twelve_triangles_is_covered_to_within_a_voxel(void** state
     pvtContext* context = CreateTestContext(2);
     pvtMesh cube;
     MakeBoxMesh(context, (pvtVec3){0, 0, 0}, (pvtVec3){1, 1, 1}, &cube);
-    pvtBuildOptions options = GetQuickOptions();
-    options.budget = 12;
-    options.effort = PVT_EFFORT_DEFAULT;
-    options.views.count = 16;
-    pvtOccluder occluder;
-    pvtBuildStats stats;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, &cube, &occluder, &stats));
-    assert_true(occluder.mesh.triangleCount <= 12);
-    assert_true(stats.outside == 0);
-    // Nothing hides more than the cube itself, and one that is a voxel shorter on each side, less.
-    assert_true(stats.measure <= stats.measureOfSolid * 1.01);
-    assert_true(stats.measure >= stats.measureOfSolid * 0.92);
-    // Distances are measured between pixels of 1/300 at most.
-    CheckUncovered(context, &cube, &occluder.mesh, stats.voxelSize + 0.0034);
-    CHECK_NEAR(stats.insideFraction, 30.0 * 30.0 * 30.0 / (32.0 * 32.0 * 32.0), 0.02);
-    pvtOccluder_Free(context, &occluder);
+    static const struct {
+        int resolution, views, pixels;
+        pvtEffort effort;
+    } cases[] = {{32, 16, 512, PVT_EFFORT_DEFAULT}, {256, 256, 1536, PVT_EFFORT_FAST}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+        const int n = cases[c].resolution;
+        pvtBuildOptions options = GetQuickOptions();
+        options.budget = 12;
+        options.effort = cases[c].effort;
+        options.views.count = cases[c].views;
+        options.resolution = n;
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &cube, &occluder, &stats));
+        assert_true(occluder.mesh.triangleCount <= 12);
+        assert_true(stats.outside == 0);
+        // Nothing hides more than the cube itself, and one a voxel shorter on each side, less.
+        assert_true(stats.measure <= stats.measureOfSolid * 1.01);
+        assert_true(stats.measure >= stats.measureOfSolid * 0.92);
+        // Distances are measured between pixels, of which at most √3 + 1/32 sides are seen.
+        CheckUncovered(context, &cube, &occluder.mesh, cases[c].pixels,
+                       stats.voxelSize + 1.77 / cases[c].pixels);
+        CHECK_NEAR(stats.insideFraction, pow(1.0 - 2.0 / n, 3.0), 0.02);
+        pvtOccluder_Free(context, &occluder);
+    }
     pvtMesh_Free(context, &cube);
     DestroyTestContext(context);
 }
