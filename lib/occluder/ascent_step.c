@@ -5,8 +5,6 @@
 
 #include "base/context.h"
 
-enum { FULL_BUDGET = 64 }; // with more triangles there are fewer steps, in about the same time
-
 bool pvtMayAscend(const pvtBuild* build)
 {
     // Where polygons may leave the surface, moving them freely would use that up for the last
@@ -42,8 +40,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .budget = budget,
         .seed = build->options->seed,
         .tries = efforts[effort].tries,
-        .iterations = budget <= FULL_BUDGET ? efforts[effort].iterations
-                                            : efforts[effort].iterations * FULL_BUDGET / budget,
+        .iterations = pvtSpreadEffort(efforts[effort].iterations, budget),
         .cycles = efforts[effort].cycles,
         .sights = efforts[effort].sights,
         .batch = efforts[effort].batch,

@@ -313,7 +313,7 @@ static void RunBatch(pvtContext* context, Bending* bending)
     }
 }
 
-// Makes a move, and takes it back when it does not gain after all.
+// Moves a corner, and takes that back when it does not gain after all.
 static bool MakeMove(pvtContext* context, pvtFacets* facets, pvtFacetChange* change)
 {
     const double screened = facets->screened, total = facets->total;

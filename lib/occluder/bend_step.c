@@ -7,10 +7,7 @@
 #include "base/context.h"
 #include "base/vector.h"
 
-enum {
-    MORE_VIEWS = 3,   // for each that is optimised for
-    FULL_BUDGET = 64, // with more triangles there are fewer sweeps, in about the same time
-};
+enum { MORE_VIEWS = 3 }; // for each that is optimised for
 
 static const double MAX_BEND_BYTES = 0x1p27;
 
@@ -88,9 +85,8 @@ static pvtStatus Bend(pvtContext* context, pvtBuild* build)
                    [PVT_EFFORT_DEFAULT] = {800, 3},
                    [PVT_EFFORT_BEST] = {60000, 4}};
     const int effort = (int)build->options->effort;
-    const int triangles = (int)build->occluder.mesh.triangleCount;
-    const int sweeps = triangles <= FULL_BUDGET ? efforts[effort].sweeps
-                                                : efforts[effort].sweeps * FULL_BUDGET / triangles;
+    const int sweeps =
+        pvtSpreadEffort(efforts[effort].sweeps, (int)build->occluder.mesh.triangleCount);
     pvtBendOptions options = {.views = &build->views,
                               .inside = &build->inside,
                               .bounds = build->bounds,

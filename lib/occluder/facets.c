@@ -23,7 +23,6 @@ void pvtFacets_Free(pvtContext* context, pvtFacets* facets)
     pvtRelease(context, facets->factors);
     pvtRelease(context, facets->masks);
     pvtRelease(context, facets->spans);
-    pvtRelease(context, facets->rows);
     pvtRelease(context, facets->layers);
     pvtRelease(context, facets->values);
     *facets = (pvtFacets){0};
@@ -31,7 +30,7 @@ void pvtFacets_Free(pvtContext* context, pvtFacets* facets)
 
 double pvtGetFacetBytes(size_t triangleCount, size_t viewCount)
 {
-    return (double)viewCount * (double)(triangleCount + 1 + LAYERS) * (ROWS * sizeof(uint64_t) + 2);
+    return (double)viewCount * (double)(triangleCount + LAYERS) * (ROWS * sizeof(uint64_t) + 2);
 }
 
 // A screen is the box around the projected bounds, and rectangles on it are drawn at random: one
@@ -100,6 +99,7 @@ static void AddMask(const pvtFacets* facets, size_t triangle, size_t view, uint6
     }
 }
 
+// The first layer is what all triangles cover.
 static uint64_t* GetLayers(const pvtFacets* facets, size_t view)
 {
     return facets->layers + view * LAYERS * ROWS;
@@ -130,11 +130,11 @@ static void CountLayers(const pvtFacets* facets, size_t view)
 
 static void CountView(const pvtFacets* facets, size_t view)
 {
-    CountLayers(facets, view);
     const uint64_t* rows = GetLayers(facets, view);
-    uint64_t* covered = facets->rows + view * ROWS;
-    if (memcmp(rows, covered, ROWS * sizeof *rows) != 0) {
-        memcpy(covered, rows, ROWS * sizeof *rows);
+    uint64_t before[ROWS];
+    memcpy(before, rows, sizeof before);
+    CountLayers(facets, view);
+    if (memcmp(rows, before, sizeof before) != 0) {
         facets->values[view] = facets->factors[view] * (double)pvtSumRectangles(rows);
     }
 }
@@ -179,12 +179,10 @@ static pvtStatus AllocateMasks(pvtContext* context, pvtFacets* facets)
     facets->factors = pvtAllocate(context, views, sizeof *facets->factors);
     facets->masks = pvtAllocate(context, masks * ROWS, sizeof *facets->masks);
     facets->spans = pvtAllocate(context, masks, sizeof *facets->spans);
-    facets->rows = pvtAllocate(context, views * ROWS, sizeof *facets->rows);
     facets->layers = pvtAllocate(context, views * ROWS * LAYERS, sizeof *facets->layers);
     facets->values = pvtAllocate(context, views, sizeof *facets->values);
     return facets->frames == NULL || facets->factors == NULL || facets->masks == NULL ||
-                   facets->spans == NULL || facets->rows == NULL || facets->layers == NULL ||
-                   facets->values == NULL
+                   facets->spans == NULL || facets->layers == NULL || facets->values == NULL
                ? pvtContext_GetStatus(context)
                : PVT_OK;
 }
@@ -258,7 +256,7 @@ static void TakeFromLayers(const pvtFacets* facets, const pvtFacetChange* change
         first = span[0] < first ? span[0] : first;
         end = span[1] > end ? span[1] : end;
     }
-    memcpy(rows, facets->rows + view * ROWS, ROWS * sizeof *rows);
+    memcpy(rows, layers, ROWS * sizeof *rows);
     if (first >= end) {
         return;
     }
@@ -295,7 +293,7 @@ static double EvaluateView(const pvtFacets* facets, const pvtFacetChange* change
             rows[y] |= drawn[y];
         }
     }
-    return memcmp(rows, facets->rows + view * ROWS, sizeof rows) == 0
+    return memcmp(rows, GetLayers(facets, view), sizeof rows) == 0
                ? facets->values[view]
                : facets->factors[view] * (double)pvtSumRectangles(rows);
 }

@@ -24,7 +24,6 @@ typedef struct pvtFacets {
     double* factors;        ///< one a view: what a unit of pvtSumRectangles is worth
     uint64_t* masks;        ///< triangle × view × row
     uint8_t (*spans)[2];    ///< triangle × view: rows from the first to before the second
-    uint64_t* rows;         ///< view × row: what all triangles cover
     uint64_t* layers;       ///< view × layer × row: covered at least once, twice, ...
     double* values;         ///< one a view
     double screened, total; ///< sums of values over the first views and over all

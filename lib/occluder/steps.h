@@ -61,6 +61,13 @@ bool pvtMayAscend(const pvtBuild* build);
 pvtInterior pvtGetInterior(const pvtBuild* build);
 /// On pvtGetSeconds' clock; 0: none.
 double pvtGetDeadline(const pvtBuild* build);
+/// How many steps or sweeps there are: fewer for more triangles, so that the time stays about the
+/// same.
+static inline int pvtSpreadEffort(int count, int triangles)
+{
+    enum { FULL_BUDGET = 64 };
+    return triangles <= FULL_BUDGET ? count : count * FULL_BUDGET / triangles;
+}
 /// Whether a polygon may lie on the surface itself.
 bool pvtMayUseSheets(const pvtBuild* build);
 /// Adds chains on the sheets to the candidates.

@@ -20,29 +20,32 @@ static size_t GetIndex(const pvtPuller* puller, size_t b, int triangle)
     return b * (size_t)puller->set->triangleCapacity + (size_t)triangle;
 }
 
-// Pixels of the goal that a triangle covers and no other, of those of its rows.
+// Pixels of a row of the goal that a triangle covers and no other.
+static inline uint64_t GetSingles(const pvtSightMask* mask, const pvtSightMask* twice,
+                                  const pvtSightMask* goal, int half, int y)
+{
+    return mask->words[half][y] & ~twice->words[half][y] & goal->words[half][y];
+}
+
 PVT_VECTOR_CLONES
-static int CountSingles(const pvtSightMask* restrict mask, const pvtSightMask* restrict twice,
-                        const pvtSightMask* restrict goal, pvtSightRows rows)
+static int CountSingles(const pvtSightMask* mask, const pvtSightMask* twice,
+                        const pvtSightMask* goal, pvtSightRows rows)
 {
     int count = 0;
     for (int half = 0; half < HALVES; ++half) {
         for (int y = rows.first; y < rows.end; ++y) {
-            count +=
-                pvtCountBits(mask->words[half][y] & ~twice->words[half][y] & goal->words[half][y]);
+            count += pvtCountBits(GetSingles(mask, twice, goal, half, y));
         }
     }
     return count;
 }
 
-static void AddSingles(const pvtSightMask* restrict mask, const pvtSightMask* restrict twice,
-                       const pvtSightMask* restrict goal, pvtSightRows rows,
-                       pvtSightMask* restrict singles)
+static void AddSingles(const pvtSightMask* mask, const pvtSightMask* twice,
+                       const pvtSightMask* goal, pvtSightRows rows, pvtSightMask* restrict singles)
 {
     for (int half = 0; half < HALVES; ++half) {
         for (int y = rows.first; y < rows.end; ++y) {
-            singles->words[half][y] |=
-                mask->words[half][y] & ~twice->words[half][y] & goal->words[half][y];
+            singles->words[half][y] |= GetSingles(mask, twice, goal, half, y);
         }
     }
 }
