@@ -28,7 +28,7 @@ occluder="$results/${name}_occluder.glb"
 stats="$results/${name}_stats.json"
 picture="$results/${name}.png"
 set -x
-"$paravent" generate "$model" -o "$occluder" --budget 64 --tolerance 1vx \
+"$paravent" generate "$model" -o "$occluder" --budget 64 \
     --stats "$stats" --preview "$picture"
 { set +x; } 2>/dev/null
 

@@ -305,15 +305,18 @@ static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t
         return 0;
     }
     const size_t column = (size_t)v * whole->wordsPerRow + (size_t)u / 64;
-    if ((whole->words[column * whole->stride + (size_t)n] >> (u % 64) & 1) != 0) {
+    const size_t word = column * whole->stride + (size_t)n;
+    if ((whole->words[word] >> (u % 64) & 1) != 0) {
         return ~UINT64_C(0);
+    }
+    if ((volume->partly[slicing->axis].words[word] >> (u % 64) & 1) == 0) {
+        return 0;
     }
     const int at = (int)n;
     const int x = slicing->axis == PVT_AXIS_X ? at : u;
     const int y = slicing->axis == PVT_AXIS_X ? u : slicing->axis == PVT_AXIS_Y ? at : v;
     const int z = slicing->axis == PVT_AXIS_Z ? at : v;
-    const size_t index = pvtCellGrid_Find(volume->cells, x, y, z);
-    return index == PVT_NO_CELLS ? 0 : volume->cellWords[slicing->axis][index];
+    return volume->cellWords[slicing->axis][pvtCellGrid_Rank(volume->cells, x, y, z)];
 }
 
 // Which of the 16 patches over a voxel's column (u, v) touch set cells only: bit i + 4 j.
@@ -351,6 +354,72 @@ static inline uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
         all &= ~clear[i];
     }
     return (uint64_t)all;
+}
+
+// The cells that all patches over a voxel's column touch together, from the level that the lowest
+// begins in. They depend on where in its cell that is, and change when one of the patches' lowest
+// or highest heights enters the next cell: so there are few, and each is made when it is first met.
+typedef struct TouchTable {
+    int32_t changes[2 * PATCHES]; // heights in a cell, in no order
+    bool made[2 * PATCHES + 1];
+    uint64_t cells[2 * PATCHES + 1][MAX_VOXELS]; // [n]: when n of the changes have come
+} TouchTable;
+
+static void StartTouchTable(const CellSlicing* slicing, TouchTable* table)
+{
+    const int cell = 1 << CELL_HEIGHT_BITS;
+    for (int i = 0; i < PATCHES; ++i) {
+        table->changes[2 * i] = -slicing->rises[i] & (cell - 1);
+        table->changes[2 * i + 1] = -(slicing->rises[i] + slicing->span) & (cell - 1);
+    }
+    memset(table->made, 0, sizeof table->made);
+}
+
+static void MakeTouched(const CellSlicing* slicing, int start, uint64_t cells[MAX_VOXELS])
+{
+    memset(cells, 0, MAX_VOXELS * sizeof *cells);
+    for (int i = 0; i < PATCHES; ++i) {
+        const int lowest = start + slicing->rises[i];
+        const int top = (lowest + slicing->span) >> CELL_HEIGHT_BITS;
+        for (int level = lowest >> CELL_HEIGHT_BITS; level <= top; ++level) {
+            cells[level / PVT_CELLS] |= UINT64_C(1) << (PATCHES * (level % PVT_CELLS) + i);
+        }
+    }
+}
+
+static inline const uint64_t* FindTouched(const CellSlicing* slicing, TouchTable* table, int start)
+{
+    int count = 0;
+    for (int i = 0; i < 2 * PATCHES; ++i) {
+        count += table->changes[i] <= start ? 1 : 0;
+    }
+    if (!table->made[count]) {
+        table->made[count] = true;
+        MakeTouched(slicing, start, table->cells[count]);
+    }
+    return table->cells[count];
+}
+
+// Whether all patches over a voxel's column (u, v) touch set cells only: what JudgePatches asks of
+// each.
+static inline bool IsVoxelCovered(const CellSlicing* slicing, TouchTable* table, int u, int v)
+{
+    const int64_t lowest =
+        slicing->first + PVT_CELLS * (slicing->stepU * u + slicing->stepV * v) + slicing->least;
+    const int64_t voxel = lowest >> HEIGHT_BITS;
+    const int start = (int)(lowest - voxel * (INT64_C(1) << HEIGHT_BITS));
+    const int last = (start + slicing->reach) >> HEIGHT_BITS;
+    const int level = start >> CELL_HEIGHT_BITS;
+    const uint64_t* touched = FindTouched(slicing, table, start & ((1 << CELL_HEIGHT_BITS) - 1));
+    uint64_t below = 0;
+    for (int n = 0; n <= last; ++n) {
+        const uint64_t cells = touched[n] << (PATCHES * level) | below;
+        below = level == 0 ? 0 : touched[n] >> (64 - PATCHES * level);
+        if (cells != 0 && (cells & ~GetColumnCells(slicing, u, v, voxel + n)) != 0) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static CellSlicing StartCells(const pvtSliceVolume* volume, const pvtPlane* plane,
@@ -424,8 +493,8 @@ PVT_VECTOR_CLONES static void SliceCellWord(const CellSlicing* slicing, int v, s
 
 // At one cell a voxel all patches over it must be covered: so no voxel that they touch may be
 // clear.
-PVT_VECTOR_CLONES static void SliceVoxelWord(const CellSlicing* slicing, int v, size_t w,
-                                             pvtBitmap* slice)
+PVT_VECTOR_CLONES static void SliceVoxelWord(const CellSlicing* slicing, TouchTable* table, int v,
+                                             size_t w, pvtBitmap* slice)
 {
     const Slicing* whole = &slicing->whole;
     const Slicing* partly = &slicing->partly;
@@ -442,8 +511,8 @@ PVT_VECTOR_CLONES static void SliceVoxelWord(const CellSlicing* slicing, int v, 
     covered &= possible;
     for (uint64_t others = possible & ~covered; others != 0; others &= others - 1) {
         const int bit = __builtin_ctzll(others);
-        const bool all = JudgePatches(slicing, (int)(w * COLUMNS) + bit, v) == 0xFFFF;
-        covered |= (uint64_t)all << bit;
+        const bool isCovered = IsVoxelCovered(slicing, table, (int)(w * COLUMNS) + bit, v);
+        covered |= (uint64_t)isCovered << bit;
     }
     slice->words[(size_t)v * slice->wordsPerRow + w] = covered;
 }
@@ -463,6 +532,8 @@ void pvtSliceCells(const pvtSliceVolume* volume, const pvtPlane* plane, int cell
     SlopeTable table;
     MakeSlopeTable(plane->slopeU, &table);
     const CellSlicing slicing = StartCells(volume, plane, &table);
+    TouchTable touched;
+    StartTouchTable(&slicing, &touched);
     const pvtSliceWindow all = {.upper = {width, height}};
     const pvtSliceWindow* part = window != NULL ? window : &all;
     const size_t first = (size_t)ClampInto(part->lower[0], width) / COLUMNS;
@@ -473,7 +544,7 @@ void pvtSliceCells(const pvtSliceVolume* volume, const pvtPlane* plane, int cell
     for (int v = ClampInto(part->lower[1], height); v < ClampInto(part->upper[1], height); ++v) {
         for (size_t w = first; w < end; ++w) {
             if (cellsPerVoxel == 1) {
-                SliceVoxelWord(&slicing, v, w, slice);
+                SliceVoxelWord(&slicing, &touched, v, w, slice);
             } else {
                 SliceCellWord(&slicing, v, w, slice);
             }
