@@ -131,8 +131,8 @@ static pvtStatus MakeSights(pvtContext* context, pvtAscent* ascent)
     const pvtSightOptions sights = {
         .views = options->views, .count = options->sights, .quads = QUADS, .seed = options->seed};
     pvtField goal;
-    pvtStatus status = pvtCreateField(context, options->goal, options->inside->interior.cells,
-                                      GOAL_RESOLUTION, &goal);
+    pvtStatus status =
+        pvtCreateField(context, options->goal, options->goalCells, GOAL_RESOLUTION, &goal);
     if (status == PVT_OK) {
         status = pvtCreateSights(context, &sights, &goal, &ascent->sights);
         pvtField_Free(context, &goal);

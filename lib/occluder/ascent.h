@@ -7,10 +7,12 @@
 #include "sheets.h"
 
 typedef struct pvtAscentOptions {
-    const pvtViewOptions* views; ///< how they are spread, or a list
-    const pvtBitGrid* goal;      ///< what there is to hide; borrowed
+    const pvtViewOptions* views;  ///< how they are spread, or a list
+    const pvtBitGrid* goal;       ///< what there is to hide; borrowed
+    const pvtCellGrid* goalCells; ///< parts of other voxels; borrowed; may be null
     const pvtInsideTest* inside;
     const pvtMesh* mesh;       ///< what the goal is of, another start; borrowed; may be null
+    const pvtMesh* flat;       ///< an occluder for this budget, another; borrowed; may be null
     const pvtSheetSet* sheets; ///< polygons on these stay where they are; borrowed; may be null
     int budget;                ///< triangles, at most PVT_MOST_ASCENT
     uint64_t seed;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A mesh of no more triangles than the budget is an occluder of itself, once it is inside: for a
-// box nothing is better. What hides no more than the climbs do is not kept.
+// box nothing is better. Where nothing but rows of holes is to be hidden, the polygons as they were
+// selected may be better than where a climb leads. What hides no more than the climbs do is not
+// kept.
 #include "ascent_state.h"
 
 #include "base/context.h"
@@ -81,10 +83,11 @@ static void TakeMesh(const pvtMesh* mesh, pvtAscent* ascent)
     pvtTriangleSet_FindEdges(set);
 }
 
-pvtStatus pvtAscent_TakeMesh(pvtContext* context, pvtAscent* ascent, bool* isTaken)
+pvtStatus pvtAscent_TakeMesh(pvtContext* context, const pvtMesh* mesh, pvtAscent* ascent,
+                             bool* isTaken)
 {
-    const pvtMesh* mesh = ascent->options->mesh;
-    *isTaken = mesh != NULL && mesh->triangleCount <= (size_t)ascent->options->budget;
+    *isTaken = mesh != NULL && mesh->triangleCount > 0 &&
+               mesh->triangleCount <= (size_t)ascent->options->budget;
     if (!*isTaken) {
         return PVT_OK;
     }

@@ -32,8 +32,10 @@ typedef struct pvtAscent {
 
 /// Adds the mesh's positions [wu] to the corners of `set`, each anchored where it is.
 void pvtAscent_AddCorners(pvtAscent* ascent, const pvtMesh* mesh);
-/// Where the mesh has no more triangles than the budget, `set` becomes these, on the surface.
-pvtStatus pvtAscent_TakeMesh(pvtContext* context, pvtAscent* ascent, bool* isTaken);
+/// Where the mesh has no more triangles than the budget, `set` becomes these, wherever they lie.
+/// `mesh` may be null.
+pvtStatus pvtAscent_TakeMesh(pvtContext* context, const pvtMesh* mesh, pvtAscent* ascent,
+                             bool* isTaken);
 /// Takes away the least useful triangles, one after the other, until `count` are left.
 void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count);
 /// Adds up to `count` triangles to the edges behind which there is most to hide; they start as

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// When triangles leave their planes, and how long they climb.
+// When triangles leave their planes, what for, and how long they climb.
 #include "ascent.h"
 #include "steps.h"
 
@@ -7,10 +7,9 @@
 
 bool pvtMayAscend(const pvtBuild* build)
 {
-    // Where polygons may leave the surface, moving them freely would use that up for the last
-    // pixels.
-    return build->options->method != PVT_METHOD_PAPER && build->solid.strictCount > 0 &&
-           build->stats.tolerance == 0.0 && build->options->budget <= PVT_MOST_ASCENT;
+    const bool hasRoom = build->stats.tolerance > 0.0 || build->solid.strictCount > 0;
+    return build->options->method != PVT_METHOD_PAPER && hasRoom &&
+           build->options->budget <= PVT_MOST_ASCENT;
 }
 
 pvtInterior pvtGetInterior(const pvtBuild* build)
@@ -18,6 +17,45 @@ pvtInterior pvtGetInterior(const pvtBuild* build)
     return (pvtInterior){.allowed = &build->allowed,
                          .cells = build->cells.count > 0 ? &build->cells : NULL,
                          .touching = build->touching.starts != NULL ? &build->touching : NULL};
+}
+
+// What there is to hide.
+typedef struct Goal {
+    const pvtBitGrid* voxels;
+    const pvtCellGrid* cells; // null: none
+    pvtBitGrid ownVoxels;
+    pvtCellGrid ownCells;
+} Goal;
+
+static void FreeGoal(pvtContext* context, Goal* goal)
+{
+    pvtBitGrid_Free(context, &goal->ownVoxels);
+    pvtCellGrid_Free(context, &goal->ownCells);
+}
+
+// Within a tolerance triangles may stick out, but nothing is to be gained there: the goal is the
+// inside, as exact as it is where there is no tolerance, and the touched voxels of sheets, which
+// have no inside beside them.
+static pvtStatus MakeGoalWithin(pvtContext* context, const pvtBuild* build, Goal* goal)
+{
+    pvtStatus status = pvtMakeAllowedGrid(context, &build->solid, 0.0, &goal->ownVoxels);
+    if (status == PVT_OK) {
+        status = pvtRefineAllowedGrid(context, build->mesh, &build->solid, &goal->ownVoxels,
+                                      &goal->ownCells);
+    }
+    for (size_t i = 0; i < goal->ownVoxels.wordCount && status == PVT_OK; ++i) {
+        goal->ownVoxels.words[i] |= build->solid.surface.words[i] & ~goal->ownCells.voxels.words[i];
+    }
+    goal->voxels = &goal->ownVoxels;
+    goal->cells = goal->ownCells.count > 0 ? &goal->ownCells : NULL;
+    return status;
+}
+
+static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal)
+{
+    *goal = (Goal){.voxels = build->hiding.words != NULL ? &build->hiding : &build->allowed,
+                   .cells = pvtGetInterior(build).cells};
+    return build->stats.tolerance > 0.0 ? MakeGoalWithin(context, build, goal) : PVT_OK;
 }
 
 static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
@@ -31,11 +69,15 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
     const int budget = build->options->budget;
     pvtViewOptions views = build->options->views;
     views.up = (int)build->options->up;
+    Goal goal;
+    pvtStatus status = MakeGoal(context, build, &goal);
     const pvtAscentOptions options = {
         .views = &views,
-        .goal = build->hiding.words != NULL ? &build->hiding : &build->allowed,
+        .goal = goal.voxels,
+        .goalCells = goal.cells,
         .inside = &build->inside,
         .mesh = build->mesh,
+        .flat = build->stats.tolerance > 0.0 ? &build->flat.mesh : NULL,
         .sheets = &build->sheets,
         .budget = budget,
         .seed = build->options->seed,
@@ -46,7 +88,11 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .batch = efforts[effort].batch,
         .polish = efforts[effort].polish,
         .deadline = pvtGetDeadline(build)};
-    return pvtAscendOccluder(context, &options, &build->occluder);
+    if (status == PVT_OK) {
+        status = pvtAscendOccluder(context, &options, &build->occluder);
+    }
+    FreeGoal(context, &goal);
+    return status;
 }
 
 pvtStatus pvtAscendStep(pvtContext* context, pvtBuild* build)

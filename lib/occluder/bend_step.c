@@ -107,7 +107,8 @@ static pvtStatus Bend(pvtContext* context, pvtBuild* build)
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
 {
     const size_t triangles = build->occluder.mesh.triangleCount;
-    if (!pvtMayAscend(build)) {
+    // The measure grows with what sticks out as well: it is of no use where that is allowed.
+    if (!pvtMayAscend(build) || build->stats.tolerance > 0.0) {
         return PVT_OK;
     }
     pvtStatus status = PVT_OK;

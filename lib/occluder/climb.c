@@ -220,13 +220,13 @@ static pvtStatus RunClimb(pvtContext* context, pvtAscent* ascent, int attempt, b
     return KeepIfBetter(context, ascent);
 }
 
-// From the mesh itself. Pushed inside it is crooked, and goes back as far as it can; there it is
-// anchored when it settles once more.
-static pvtStatus TryMesh(pvtContext* context, pvtAscent* ascent)
+// From a mesh, such as the model itself. Pushed inside it is crooked, and goes back as far as it
+// can; there it is anchored when it settles once more.
+static pvtStatus TryMesh(pvtContext* context, const pvtMesh* mesh, pvtAscent* ascent)
 {
     const pvtTriangleSet* set = &ascent->set;
     bool isTaken = false;
-    pvtStatus status = pvtAscent_TakeMesh(context, ascent, &isTaken);
+    pvtStatus status = pvtAscent_TakeMesh(context, mesh, ascent, &isTaken);
     if (status != PVT_OK || !isTaken) {
         return status;
     }
@@ -260,7 +260,10 @@ pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
 {
     bool goesOn = true;
     ascent->bestWorth = -1.0;
-    pvtStatus status = TryMesh(context, ascent);
+    pvtStatus status = TryMesh(context, ascent->options->mesh, ascent);
+    if (status == PVT_OK) {
+        status = TryMesh(context, ascent->options->flat, ascent);
+    }
     for (int i = 0; i < ascent->options->tries && goesOn && status == PVT_OK; ++i) {
         status = RunClimb(context, ascent, i, &goesOn);
     }

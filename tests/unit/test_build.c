@@ -120,6 +120,43 @@ static void an_occluder_never_hides_more_than_the_solid_at_any_resolution(void**
     DestroyTestContext(context);
 }
 
+static pvtQuadScore ScoreTorus(pvtContext* context, const pvtMesh* torus, double tolerance)
+{
+    pvtBuildOptions options = GetQuickOptions();
+    options.resolution = 64;
+    options.budget = 48;
+    options.tolerance = (pvtLength){tolerance, true};
+    pvtOccluder occluder;
+    CHECK_OK(context, pvtBuildOccluder(context, &options, torus, &occluder, NULL));
+    pvtEvaluateOptions evaluate = pvtDefaultEvaluateOptions();
+    evaluate.views = 32;
+    evaluate.quads = 4000;
+    pvtEvaluation evaluation;
+    CHECK_OK(context,
+             pvtEvaluateOccluders(context, &evaluate, torus, &occluder.mesh, 1, &evaluation));
+    const pvtQuadScore score = evaluation.occluders[0].uniform;
+    pvtEvaluation_Free(context, &evaluation);
+    pvtOccluder_Free(context, &occluder);
+    return score;
+}
+
+// Sticking out is allowed, but not worth anything by itself.
+static void a_tolerance_hides_much_more_and_hardly_anything_that_is_seen(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtMesh torus;
+    MakeTorus(context, &torus);
+    const pvtQuadScore strict = ScoreTorus(context, &torus, 0.0);
+    const pvtQuadScore loose = ScoreTorus(context, &torus, 1.0);
+    assert_true(strict.precision == 1.0);
+    assert_true(loose.precision > 0.997);
+    assert_true(loose.recall > strict.recall + 0.1);
+    assert_true(loose.recall > 0.9);
+    pvtMesh_Free(context, &torus);
+    DestroyTestContext(context);
+}
+
 static void the_budget_holds_and_nothing_leaves_the_allowed_voxels(void** state)
 {
     (void)state;
@@ -278,6 +315,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cube_at_twelve_triangles_is_covered_to_within_a_voxel),
         cmocka_unit_test(an_occluder_never_hides_more_than_the_solid_at_any_resolution),
+        cmocka_unit_test(a_tolerance_hides_much_more_and_hardly_anything_that_is_seen),
         cmocka_unit_test(the_budget_holds_and_nothing_leaves_the_allowed_voxels),
         cmocka_unit_test(the_hole_of_a_torus_stays_open),
         cmocka_unit_test(threads_do_not_change_a_byte),
