@@ -228,7 +228,7 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
     const pvtBuildOptions* options = build->options;
     pvtSolidOptions solid = pvtDefaultSolidOptions();
     solid.smallestHole = build->stats.smallestHole;
-    solid.strict = build->stats.tolerance == 0.0;
+    solid.strict = options->method == PVT_METHOD_PLANAR || build->stats.tolerance == 0.0;
     solid.ground = options->ground;
     solid.terrain = options->terrain;
     solid.up = options->up;

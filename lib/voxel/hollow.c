@@ -9,6 +9,11 @@
 // of the bounds and three times what is inside already. On 52 real models this found the shells,
 // and no tree or twig.
 //
+// The ground closes nothing but what stands open on it, so that it may be told for less: a trunk is
+// a small part of its tree's bounds, but nearly all that a tree hides anything by. Twice of what is
+// inside is enough there, which on the same models found three trees and two buildings; with no
+// other does the inside grow by more than six tenths.
+//
 // The search runs on a coarse copy of the grid, where each size costs little. Finer copies are
 // looked at only when there is something to find, from the size that the coarser one gave, and
 // only while that size is few voxels, so that a voxel matters. Coarse voxels make openings look
@@ -37,6 +42,8 @@ enum {
 static const double roomFactor = 1.5;
 static const double leastFraction = 0.01; // of the bounds
 static const double leastGain = 3.0;
+static const double leastGroundFraction = 0.0001;
+static const double leastGroundGain = 2.0;
 static const double coarseShare = 0.5;
 static const double sizeStep = 1.1892071150027210; // ⁴√2
 static const double largestShare = 0.25;           // of the longest side
@@ -419,13 +426,15 @@ static pvtStatus FindNextRemedy(pvtContext* context, const pvtSolidOptions* opti
     const double volume = pvtGridBox_GetVolume(&box);
     const double touched = (double)pvtBitGrid_Count(surface) / volume;
     const double needed = fmax(leastFraction, leastGain * strictCount / volume);
-    if (needed > 1.0 - touched) {
-        return PVT_OK;
+    const double ofGround = fmax(leastGroundFraction, leastGroundGain * strictCount / volume);
+    pvtStatus status = PVT_OK;
+    if (ofGround <= 1.0 - touched) {
+        status = TryGround(context, options, surface, ofGround * volume, remedy);
     }
-    pvtStatus status = TryGround(context, options, surface, needed * volume, remedy);
-    if (status == PVT_OK && !IsFound(remedy)) {
-        status = FindHole(context, options, surface, needed, &remedy->smallestHole);
+    if (status != PVT_OK || IsFound(remedy) || needed > 1.0 - touched) {
+        return status;
     }
+    status = FindHole(context, options, surface, needed, &remedy->smallestHole);
     if (status == PVT_OK && !IsFound(remedy)) {
         status = TryTerrain(context, options, surface, needed * volume, remedy);
     }

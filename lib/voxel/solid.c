@@ -77,9 +77,10 @@ static void WarnWhenHollow(pvtContext* context, const pvtSolid* solid)
     if (remedy->smallestHole > 0.0) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, because the surface has "
-               "openings; unless these are doors or windows, --smallest-hole %g (%.1f voxels)%s "
-               "closes them",
-               percent, remedy->smallestHole, voxels, remedy->ground ? " and --ground" : "");
+               "openings; unless these are doors or windows, --smallest-hole %g (%.1f voxels) "
+               "%s them",
+               percent, remedy->smallestHole, voxels,
+               remedy->ground ? "and --ground close" : "closes");
     } else if (remedy->ground) {
         pvtLog(context, PVT_LOG_WARNING,
                "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "

@@ -2,6 +2,7 @@
 #include "voxel_shapes.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 // A shell of about one and a half voxels around a ball, with round holes at both ends of z.
 static void MakeShell(pvtContext* context, int radius, double hole, pvtBitGrid* surface)
@@ -159,6 +160,44 @@ static void MakeHall(pvtContext* context, pvtAxis up, int hole, pvtBitGrid* surf
             SetVoxel(surface, v[0], v[1], v[2]);
         }
     }
+}
+
+// A trunk of 5 × 5 voxels inside, open below, under a crown of rods that makes the bounds large.
+static void MakeTree(pvtContext* context, bool isOpen, pvtBitGrid* surface)
+{
+    enum { SIDE = 84, MIDDLE = 42, TOP = 40, HALF = 3 };
+    MakeEmptyGrid(context, SIDE, SIDE, SIDE, surface);
+    for (int y = 2; y <= TOP; ++y) {
+        for (int x = -HALF; x <= HALF; ++x) {
+            for (int z = -HALF; z <= HALF; ++z) {
+                const bool isWall = abs(x) == HALF || abs(z) == HALF || y == TOP;
+                if (isWall || (y == 2 && !isOpen)) {
+                    SetVoxel(surface, MIDDLE + x, y, MIDDLE + z);
+                }
+            }
+        }
+    }
+    for (int i = 2; i < SIDE - 2; ++i) {
+        SetVoxel(surface, i, TOP + 4, MIDDLE);
+        SetVoxel(surface, MIDDLE, TOP + 8, i);
+        SetVoxel(surface, MIDDLE, i / 2 + TOP, MIDDLE);
+    }
+    surface->frame.voxelSize = 0.1;
+}
+
+static void the_ground_is_told_for_a_trunk_that_is_open_below(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    for (int isOpen = 0; isOpen < 2; ++isOpen) {
+        pvtBitGrid surface;
+        MakeTree(context, isOpen != 0, &surface);
+        const pvtRemedy remedy = FindRemedy(context, &surface, pvtDefaultSolidOptions());
+        assert_true(remedy.ground == (isOpen != 0));
+        assert_true(remedy.smallestHole == 0.0 && !remedy.terrain);
+        pvtBitGrid_Free(context, &surface);
+    }
+    DestroyTestContext(context);
 }
 
 static void the_ground_is_told_for_a_hall_without_a_floor(void** state)
@@ -334,6 +373,7 @@ int main(void)
         cmocka_unit_test(one_remedy_fills_a_shell_within_a_shell),
         cmocka_unit_test(a_closed_shell_needs_no_remedy),
         cmocka_unit_test(a_tangle_of_rods_is_not_called_hollow),
+        cmocka_unit_test(the_ground_is_told_for_a_trunk_that_is_open_below),
         cmocka_unit_test(the_ground_is_told_for_a_hall_without_a_floor),
         cmocka_unit_test(terrain_is_told_for_a_height_field),
         cmocka_unit_test(a_hollow_solid_is_warned_about_with_the_size_that_helps),
