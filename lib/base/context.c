@@ -200,7 +200,7 @@ pvtStatus pvtCheckMemory(pvtContext* context, size_t bytes, const char* purpose)
         purpose, (double)bytes / 1e6, (double)left / 1e6);
 }
 
-void* pvtAllocate(pvtContext* context, size_t count, size_t size)
+void* pvtAllocateUnset(pvtContext* context, size_t count, size_t size)
 {
     const size_t most = SIZE_MAX - sizeof(BlockHeader) - ALIGNMENT;
     if (size != 0 && count > most / size) {
@@ -227,8 +227,16 @@ void* pvtAllocate(pvtContext* context, size_t count, size_t size)
     const uintptr_t aligned = (first + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
     BlockHeader* header = (BlockHeader*)aligned - 1;
     *header = (BlockHeader){raw, whole};
-    memset((void*)aligned, 0, bytes);
     return (void*)aligned;
+}
+
+void* pvtAllocate(pvtContext* context, size_t count, size_t size)
+{
+    void* memory = pvtAllocateUnset(context, count, size);
+    if (memory != NULL) {
+        memset(memory, 0, count * size);
+    }
+    return memory;
 }
 
 void* pvtReallocate(pvtContext* context, void* memory, size_t count, size_t size)

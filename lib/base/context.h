@@ -17,6 +17,9 @@ void pvtLog(pvtContext* context, pvtLogLevel level, const char* format, ...)
 /// pvtContext_GetStatus. count × size may not overflow: that is PVT_LIMIT. A count of 0 gives a
 /// block that may be freed. Safe on any thread.
 void* pvtAllocate(pvtContext* context, size_t count, size_t size);
+/// The same, not zeroed: for what is written as a whole before it is read, by several workers, so
+/// that each of them gets its own pages.
+void* pvtAllocateUnset(pvtContext* context, size_t count, size_t size);
 /// Grows or shrinks a block to count × size bytes; new bytes are zeroed. On failure the old block
 /// stays as it was, and null is returned.
 void* pvtReallocate(pvtContext* context, void* memory, size_t count, size_t size);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Chamfer distances (Borgefors, Distance Transformations in Digital Images, 1986) with the weights
 // 8, 11 and 14 in a band on both sides of the border, a row at a time. Nodes that are allowed in
-// part start from their share of allowed cells, which for a flat border is its distance.
+// part start from their share of allowed cells, which for a flat border is its distance. Distances
+// into the inside and out of it are kept in one number, above and below 0, and found together.
 #include "field.h"
 
 #include "base/bits.h"
@@ -15,25 +16,30 @@
 
 enum {
     STEPS = PVT_FIELD_STEPS,
-    ZERO = 128,                          // of the distances while they grow
-    FAR = ZERO + STEPS * PVT_FIELD_BAND, // no sum of this and a weight passes 255
-    EDGE = 11,                           // to a neighbour across an edge, in eighths
+    FAR = STEPS * PVT_FIELD_BAND, // no sum of this and a weight passes 127
+    NEAR = STEPS / 2,             // of a node as a whole on one side from the border of its own
+    EDGE = 11,                    // to a neighbour across an edge, in eighths
     CORNER = 14,
-    SIDES = 2,
+    SLABS = 2,
+    MOST_STEP = 8, // along a row
+    MOST_WIDTH = 2048 + 2 * MOST_STEP,
     BRICK = 4,
 };
 
-// Distances into one side, from the other one's nodes; rows have a node more at each end.
-typedef struct Side {
-    uint8_t* rows;
+// Layers that are made at once, with those around them from which distances may come: so slabs do
+// not wait for each other. Rows have a node more at each end.
+typedef struct Slab {
+    int8_t* rows;
     int width, height, depth; // padded width
-} Side;
+    int from;                 // the first layer
+    int begin, end;           // the layers of its own
+} Slab;
 
 typedef struct Maker {
     const pvtBitGrid* allowed;
     const pvtCellGrid* cells;
     pvtField* field;
-    Side sides[SIDES]; // inside, outside
+    Slab slabs[SLABS];
 } Maker;
 
 void pvtField_Free(pvtContext* context, pvtField* field)
@@ -43,9 +49,10 @@ void pvtField_Free(pvtContext* context, pvtField* field)
     *field = (pvtField){0};
 }
 
-static uint8_t* GetRow(const Side* side, int y, int z)
+static int8_t* GetRow(const Slab* slab, int y, int z)
 {
-    return side->rows + ((size_t)z * (size_t)side->height + (size_t)y) * (size_t)side->width;
+    const size_t layer = (size_t)(z - slab->from);
+    return slab->rows + (layer * (size_t)slab->height + (size_t)y) * (size_t)slab->width;
 }
 
 // What of a node is inside, in 64ths of a voxel; the surface passes the middle of border cells.
@@ -77,16 +84,14 @@ static int CountAllowed(const Maker* maker, int x, int y, int z)
     return count;
 }
 
-// A node's own share tells how far it is from the border; nodes as a whole on one side of it are
-// FAR on that side, and half a node away on the other.
-static void StartNode(const Maker* maker, int x, int y, int z, uint8_t* inside, uint8_t* outside)
+// A node's own share tells how far it is from the border.
+static int8_t GetShare(const Maker* maker, int x, int y, int z)
 {
     const int n = maker->field->nodeSize;
     const int full = 64 * n * n * n;
     const int count = CountAllowed(maker, x, y, z);
-    const int share = (2 * STEPS * count + full) / (2 * full) - STEPS / 2;
-    *inside = (uint8_t)(count < full ? ZERO + share : FAR);
-    *outside = (uint8_t)(count > 0 ? ZERO - share : FAR);
+    const int share = (2 * STEPS * count + full) / (2 * full) - NEAR;
+    return (int8_t)(count == 0 ? -FAR : count < full ? share : FAR);
 }
 
 // Voxels of a node's rows that are allowed throughout, and those that are anywhere in part.
@@ -113,7 +118,7 @@ static RowBits GetRowBits(const Maker* maker, int y, int z, size_t word)
     return bits;
 }
 
-static void StartRow(const Maker* maker, int y, int z, uint8_t* inside, uint8_t* outside)
+static void StartRow(const Maker* maker, int y, int z, int8_t* row)
 {
     const int n = maker->field->nodeSize, width = maker->field->size[0];
     const int perWord = 64 / n;
@@ -122,123 +127,125 @@ static void StartRow(const Maker* maker, int y, int z, uint8_t* inside, uint8_t*
         const int count = width - first < perWord ? width - first : perWord;
         const RowBits bits = GetRowBits(maker, y, z, (size_t)(first / perWord));
         const bool isAll = bits.all == ~UINT64_C(0), isNone = bits.some == 0;
-        memset(inside + first, isAll ? FAR : ZERO - STEPS / 2, (size_t)count);
-        memset(outside + first, isNone ? FAR : ZERO - STEPS / 2, (size_t)count);
+        memset(row + first, isAll ? FAR : -FAR, (size_t)count);
         for (int i = 0; i < count && !isAll && !isNone; ++i) {
             const uint64_t mask = node << (i * n);
-            if ((bits.some & mask) == 0) {
-                outside[first + i] = FAR;
-            } else if ((bits.all & mask) == mask) {
-                inside[first + i] = FAR;
-            } else {
-                StartNode(maker, first + i, y, z, inside + first + i, outside + first + i);
+            if ((bits.some & mask) != 0) {
+                row[first + i] =
+                    (int8_t)((bits.all & mask) == mask ? FAR : GetShare(maker, first + i, y, z));
             }
         }
     }
 }
 
-static void StartLayers(size_t begin, size_t end, int worker, void* taskData)
+static inline int8_t GetLeast(int8_t a, int8_t b)
 {
-    (void)worker;
-    const Maker* maker = taskData;
-    for (int z = (int)begin; z < (int)end; ++z) {
-        for (int y = 0; y < maker->field->size[1]; ++y) {
-            uint8_t* inside = GetRow(&maker->sides[0], y, z);
-            uint8_t* outside = GetRow(&maker->sides[1], y, z);
-            memset(inside, FAR, (size_t)maker->sides[0].width);
-            memset(outside, FAR, (size_t)maker->sides[0].width);
-            StartRow(maker, y, z, inside + 1, outside + 1);
-        }
-    }
+    return a < b ? a : b;
+}
+
+static inline int8_t GetMost(int8_t a, int8_t b)
+{
+    return a > b ? a : b;
+}
+
+// Nodes inside get nearer to the border from below, those outside from above, and the border's own
+// never: to either side the other one counts as half a node away as a whole.
+static inline int8_t Relax(int8_t node, int8_t inside, int8_t outside)
+{
+    return GetMost(GetLeast(node, inside), outside);
 }
 
 PVT_VECTOR_CLONES
-static void RelaxFromRow(const uint8_t* restrict from, int width, int straight, int slanted,
-                         uint8_t* restrict row)
+static void RelaxFromRow(const int8_t* restrict from, int width, int straight, int slanted,
+                         int8_t* restrict row)
 {
     for (int x = 1; x < width - 1; ++x) {
-        const uint8_t side = from[x - 1] < from[x + 1] ? from[x - 1] : from[x + 1];
-        const uint8_t a = (uint8_t)(from[x] + straight);
-        const uint8_t b = (uint8_t)(side + slanted);
-        const uint8_t least = a < b ? a : b;
-        row[x] = least < row[x] ? least : row[x];
+        const int8_t low = GetLeast(from[x - 1], from[x + 1]);
+        const int8_t high = GetMost(from[x - 1], from[x + 1]);
+        const int8_t inside = GetLeast((int8_t)(GetMost(from[x], -NEAR) + straight),
+                                       (int8_t)(GetMost(low, -NEAR) + slanted));
+        const int8_t outside = GetMost((int8_t)(GetLeast(from[x], NEAR) - straight),
+                                       (int8_t)(GetLeast(high, NEAR) - slanted));
+        row[x] = Relax(row[x], inside, outside);
     }
 }
 
 // From `step` nodes away on both sides, through `copy`, which has as many more at its ends.
 PVT_VECTOR_CLONES
-static void RelaxWithin(const uint8_t* restrict copy, int width, int step, uint8_t* restrict row)
+static void RelaxWithin(const int8_t* restrict copy, int width, int step, int8_t* restrict row)
 {
-    const uint8_t added = (uint8_t)(STEPS * step);
+    const int8_t added = (int8_t)(STEPS * step);
+    // The farthest that could still matter, so that no sum passes what a byte holds.
+    const int8_t most = (int8_t)(FAR - added);
     for (int x = 0; x < width; ++x) {
-        const uint8_t left = copy[x - step], right = copy[x + step];
-        const uint8_t side = left < right ? left : right;
-        // The nearest that could still matter, so that no sum wraps around.
-        const uint8_t near = side < FAR - added ? (uint8_t)(side + added) : FAR;
-        row[x] = near < row[x] ? near : row[x];
+        const int8_t low = GetLeast(copy[x - step], copy[x + step]);
+        const int8_t high = GetMost(copy[x - step], copy[x + step]);
+        const int8_t inside = (int8_t)(GetLeast(GetMost(low, -NEAR), most) + added);
+        const int8_t outside = (int8_t)(GetMost(GetLeast(high, NEAR), (int8_t)-most) - added);
+        row[x] = Relax(row[x], inside, outside);
     }
 }
 
-enum { MOST_STEP = 8 };
-
-static void RelaxRow(const Side* side, int y, int z, int way, uint8_t* buffer)
+// What lies beyond the ends of a row is as the nodes there, which keeps it from mattering.
+static void FillEnds(int8_t* first, int width, int length)
 {
-    uint8_t* row = GetRow(side, y, z);
-    const int width = side->width;
+    memset(first - length, first[0], (size_t)length);
+    memset(first + width, first[width - 1], (size_t)length);
+}
+
+static void RelaxRow(const Slab* slab, int y, int z, int way, int8_t* buffer)
+{
+    int8_t* row = GetRow(slab, y, z);
+    const int width = slab->width;
     for (int i = 0; i < 4; ++i) {
         // The row before in this layer, and three of the layer before.
         const int fromY = i == 0 ? y - way : y + i - 2;
         const int fromZ = i == 0 ? z : z - way;
-        if (fromY < 0 || fromY >= side->height || fromZ < 0 || fromZ >= side->depth) {
+        if (fromY < 0 || fromY >= slab->height || fromZ < slab->from ||
+            fromZ >= slab->from + slab->depth) {
             continue;
         }
         const bool isStraight = i == 0 || i == 2;
-        RelaxFromRow(GetRow(side, fromY, fromZ), width, isStraight ? STEPS : EDGE,
+        RelaxFromRow(GetRow(slab, fromY, fromZ), width, isStraight ? STEPS : EDGE,
                      isStraight ? EDGE : CORNER, row);
     }
     for (int step = 1; step <= MOST_STEP; step *= 2) {
-        memcpy(buffer + MOST_STEP, row, (size_t)width);
-        RelaxWithin(buffer + MOST_STEP, width, step, row);
+        memcpy(buffer + MOST_STEP, row + 1, (size_t)width - 2);
+        FillEnds(buffer + MOST_STEP, width - 2, MOST_STEP);
+        RelaxWithin(buffer + MOST_STEP, width - 2, step, row + 1);
+    }
+    FillEnds(row + 1, width - 2, 1);
+}
+
+static void StoreRow(const pvtField* field, int y, int z, const int8_t* row)
+{
+    int8_t* depths = field->depths + field->places[1][y] + field->places[2][z];
+    for (int x = 0; x < field->size[0]; ++x) {
+        depths[field->places[0][x]] = row[x];
     }
 }
 
-static void SpreadSides(size_t begin, size_t end, int worker, void* taskData)
+static void MakeSlabs(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Maker* maker = taskData;
-    enum { MOST_WIDTH = 2048 + 2 * MOST_STEP };
-    uint8_t buffer[MOST_WIDTH];
-    memset(buffer, FAR, sizeof buffer);
+    int8_t buffer[MOST_WIDTH];
     for (size_t s = begin; s < end; ++s) {
-        const Side* side = &maker->sides[s];
-        for (int z = 0; z < side->depth; ++z) {
-            for (int y = 0; y < side->height; ++y) {
-                RelaxRow(side, y, z, 1, buffer);
+        const Slab* slab = &maker->slabs[s];
+        const int last = slab->from + slab->depth - 1;
+        for (int z = slab->from; z <= last; ++z) {
+            for (int y = 0; y < slab->height; ++y) {
+                int8_t* row = GetRow(slab, y, z);
+                StartRow(maker, y, z, row + 1);
+                RelaxRow(slab, y, z, 1, buffer);
             }
         }
-        for (int z = side->depth - 1; z >= 0; --z) {
-            for (int y = side->height - 1; y >= 0; --y) {
-                RelaxRow(side, y, z, -1, buffer);
-            }
-        }
-    }
-}
-
-// A node that is allowed in part has the same distance in both; what is clear as a whole counts as
-// half a node away from the inside, which is as low as that goes.
-static void JoinSides(size_t begin, size_t end, int worker, void* taskData)
-{
-    (void)worker;
-    const Maker* maker = taskData;
-    const pvtField* field = maker->field;
-    for (int z = (int)begin; z < (int)end; ++z) {
-        for (int y = 0; y < field->size[1]; ++y) {
-            const uint8_t* inside = GetRow(&maker->sides[0], y, z) + 1;
-            const uint8_t* outside = GetRow(&maker->sides[1], y, z) + 1;
-            int8_t* row = field->depths + field->places[1][y] + field->places[2][z];
-            for (int x = 0; x < field->size[0]; ++x) {
-                const int in = inside[x] - ZERO, out = outside[x] - ZERO;
-                row[field->places[0][x]] = (int8_t)(in > -STEPS / 2 ? in : -out);
+        for (int z = last; z >= slab->from; --z) {
+            for (int y = slab->height - 1; y >= 0; --y) {
+                RelaxRow(slab, y, z, -1, buffer);
+                if (z >= slab->begin && z < slab->end) {
+                    StoreRow(maker->field, y, z, GetRow(slab, y, z) + 1);
+                }
             }
         }
     }
@@ -273,15 +280,18 @@ static pvtStatus MakePlaces(pvtContext* context, pvtField* field)
     return PVT_OK;
 }
 
-static pvtStatus MakeSides(pvtContext* context, Maker* maker)
+static pvtStatus PlaceSlabs(pvtContext* context, Maker* maker)
 {
     const int* size = maker->field->size;
-    const size_t rows = (size_t)size[1] * (size_t)size[2];
-    for (int s = 0; s < SIDES; ++s) {
-        Side* side = &maker->sides[s];
-        *side = (Side){NULL, size[0] + 2, size[1], size[2]};
-        side->rows = pvtAllocate(context, rows, (size_t)side->width);
-        if (side->rows == NULL) {
+    for (int s = 0; s < SLABS; ++s) {
+        Slab* slab = &maker->slabs[s];
+        const int begin = size[2] * s / SLABS, end = size[2] * (s + 1) / SLABS;
+        const int from = begin > PVT_FIELD_BAND ? begin - PVT_FIELD_BAND : 0;
+        const int stop = end + PVT_FIELD_BAND < size[2] ? end + PVT_FIELD_BAND : size[2];
+        *slab = (Slab){NULL, size[0] + 2, size[1], stop - from, from, begin, end};
+        const size_t rows = (size_t)slab->height * (size_t)slab->depth;
+        slab->rows = pvtAllocateUnset(context, rows, (size_t)slab->width);
+        if (slab->rows == NULL) {
             return pvtContext_GetStatus(context);
         }
     }
@@ -302,20 +312,18 @@ pvtStatus pvtCreateField(pvtContext* context, const pvtBitGrid* allowed, const p
     for (int axis = 0; axis < 3; ++axis) {
         field->size[axis] = (size[axis] + field->nodeSize - 1) / field->nodeSize;
     }
-    Maker maker = {allowed, cells != NULL && cells->count > 0 ? cells : NULL, field, {{0}, {0}}};
+    Maker maker = {allowed, cells != NULL && cells->count > 0 ? cells : NULL, field, {{0}}};
     pvtStatus status = MakePlaces(context, field);
     if (status == PVT_OK) {
-        status = MakeSides(context, &maker);
+        status = PlaceSlabs(context, &maker);
     }
     if (status == PVT_OK) {
-        pvtParallelFor(context, StartLayers, (size_t)field->size[2], 4, &maker);
-        pvtParallelFor(context, SpreadSides, SIDES, 1, &maker);
-        pvtParallelFor(context, JoinSides, (size_t)field->size[2], 4, &maker);
+        pvtParallelFor(context, MakeSlabs, SLABS, 1, &maker);
     } else {
         pvtField_Free(context, field);
     }
-    for (int s = 0; s < SIDES; ++s) {
-        pvtRelease(context, maker.sides[s].rows);
+    for (int s = 0; s < SLABS; ++s) {
+        pvtRelease(context, maker.slabs[s].rows);
     }
     return status;
 }

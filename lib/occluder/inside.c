@@ -5,6 +5,7 @@
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
+#include "base/vectors.h"
 #include "voxel/bit_grid.h"
 #include "voxel/cell_grid.h"
 
@@ -55,48 +56,61 @@ static void MarkBlocks(pvtInsideTest* test)
             for (int x = 0; x < test->blocks[0]; ++x) {
                 const Range range = {{x * side, y * side, z * side},
                                      {(x + 1) * side - 1, (y + 1) * side - 1, (z + 1) * side - 1}};
+                const bool isOutermost = x == 0 || y == 0 || z == 0 || x == test->blocks[0] - 1 ||
+                                         y == test->blocks[1] - 1 || z == test->blocks[2] - 1;
                 test->reach[pvtInsideTest_GetBlock(test, x, y, z)] =
-                    AreVoxelsSet(test->interior.allowed, &range) ? MAX_REACH : 0;
+                    !AreVoxelsSet(test->interior.allowed, &range) ? 0
+                    : isOutermost                                 ? 1
+                                                                  : MAX_REACH;
             }
         }
     }
 }
 
-// The least of the 13 neighbours that come before a block, plus one; blocks outside count 0.
-static int GetReachFromBefore(const pvtInsideTest* test, const int block[3], int step)
+// One more than the least of the three neighbours that each block of a row has in another.
+PVT_VECTOR_CLONES
+static void ReachFromRow(const uint8_t* restrict from, int width, uint8_t* restrict row)
 {
-    int least = MAX_REACH;
-    for (int i = 0; i < 13; ++i) {
-        const int x = block[0] - step + step * (i % 3);
-        const int y = block[1] - step + step * (i / 3 % 3);
-        const int z = block[2] - step + step * (i / 9);
-        const bool isIn = x >= 0 && y >= 0 && z >= 0 && x < test->blocks[0] &&
-                          y < test->blocks[1] && z < test->blocks[2];
-        const int reach = isIn ? test->reach[pvtInsideTest_GetBlock(test, x, y, z)] + 1 : 1;
-        least = reach < least ? reach : least;
+    for (int x = 1; x < width - 1; ++x) {
+        const uint8_t side = from[x - 1] < from[x + 1] ? from[x - 1] : from[x + 1];
+        const uint8_t least = side < from[x] ? side : from[x];
+        const uint8_t reach = (uint8_t)(least + (least < MAX_REACH ? 1 : 0));
+        row[x] = reach < row[x] ? reach : row[x];
     }
-    return least;
+}
+
+static void ReachWithinRow(int width, int way, uint8_t* row)
+{
+    for (int i = 1; i < width - 1; ++i) {
+        const int x = way > 0 ? i : width - 1 - i;
+        const int reach = row[x - way] + 1;
+        row[x] = reach < row[x] ? (uint8_t)reach : row[x];
+    }
+}
+
+// From three rows of the layer before, and the row before in its own.
+static void SpreadToRow(const pvtInsideTest* test, int y, int z, int way)
+{
+    const int width = test->blocks[0];
+    uint8_t* row = test->reach + pvtInsideTest_GetBlock(test, 0, y, z);
+    for (int i = -1; i <= 1; ++i) {
+        ReachFromRow(test->reach + pvtInsideTest_GetBlock(test, 0, y + i, z - way), width, row);
+    }
+    ReachFromRow(test->reach + pvtInsideTest_GetBlock(test, 0, y - way, z), width, row);
+    ReachWithinRow(width, way, row);
 }
 
 // Rosenfeld and Pfaltz, Sequential Operations in Digital Picture Processing, 1966: one pass forth
-// and one back give the distance along the farthest axis exactly.
+// and one back give the distance along the farthest axis exactly. Outside of the grid is clear, so
+// that the outermost blocks, which are as they are marked, reach one block at most.
 static void SpreadReach(pvtInsideTest* test)
 {
-    const size_t count =
-        (size_t)test->blocks[0] * (size_t)test->blocks[1] * (size_t)test->blocks[2];
-    for (int pass = 0; pass < 2; ++pass) {
-        for (size_t i = 0; i < count; ++i) {
-            const size_t index = pass == 0 ? i : count - 1 - i;
-            if (test->reach[index] == 0) {
-                continue;
-            }
-            const size_t row = index / (size_t)test->blocks[0];
-            const int block[3] = {(int)(index % (size_t)test->blocks[0]),
-                                  (int)(row % (size_t)test->blocks[1]),
-                                  (int)(row / (size_t)test->blocks[1])};
-            const int reach = GetReachFromBefore(test, block, pass == 0 ? 1 : -1);
-            if (reach < test->reach[index]) {
-                test->reach[index] = (uint8_t)reach;
+    const int* blocks = test->blocks;
+    for (int way = 1; way >= -1; way -= 2) {
+        for (int k = 1; k < blocks[2] - 1; ++k) {
+            const int z = way > 0 ? k : blocks[2] - 1 - k;
+            for (int j = 1; j < blocks[1] - 1; ++j) {
+                SpreadToRow(test, way > 0 ? j : blocks[1] - 1 - j, z, way);
             }
         }
     }

@@ -4,7 +4,8 @@
 // Here a step adds as many links of one chain as gain most of the measure per triangle, so that the
 // budget is spent where it counts from the first triangle on. Gains are evaluated lazily (Minoux,
 // Accelerated Greedy Algorithms, 1978): those of earlier steps order the queue, and only its head
-// is evaluated again.
+// is evaluated again. The same holds for the levels of a chain: what each gained the last time
+// tells which of them may still be the best.
 #include "select.h"
 #include "base/context.h"
 #include "base/vector.h"
@@ -26,7 +27,9 @@ enum {
 typedef struct Offer {
     double gain; // per triangle; a guess from above until it is evaluated
     int32_t level;
-    bool fresh; // evaluated against the present cut
+    bool fresh;              // evaluated against the present cut
+    bool isKnown;            // `gains` holds
+    float gains[MAX_LEVELS]; // of the levels above the present one, the last time: none is more now
 } Offer;
 
 typedef struct Selection {
@@ -94,27 +97,80 @@ static double GetGain(const Selection* selection, size_t candidate, int32_t leve
     return gain;
 }
 
+typedef struct LevelList {
+    int32_t levels[MAX_LEVELS];
+    int count;
+} LevelList;
+
+static LevelList ListNextLevels(const Selection* selection, size_t candidate)
+{
+    const int32_t present = selection->cut->triangles[candidate];
+    int32_t most = selection->candidates->triangles[candidate];
+    most = most - present > selection->left ? present + selection->left : most;
+    LevelList list;
+    list.count = ListLevels(present, most > 254 ? 254 : most, list.levels);
+    return list;
+}
+
+// Bounds for all levels from the gain of the last one: a shorter link lies in a longer one but for
+// a little.
+static void GuessGains(const Selection* selection, size_t candidate, Offer* offer)
+{
+    static const double MORE = 1.1;
+    const int32_t present = selection->cut->triangles[candidate];
+    // With a budget that ran low there are fewer levels now than there may be later.
+    const int32_t most = selection->candidates->triangles[candidate];
+    int32_t levels[MAX_LEVELS];
+    const int count = ListLevels(present, most > 254 ? 254 : most, levels);
+    const double gain = count > 0 ? GetGain(selection, candidate, levels[count - 1]) : 0.0;
+    for (int l = 0; l < count; ++l) {
+        offer->gains[l] = (float)(MORE * gain / (levels[l] - present));
+    }
+    offer->isKnown = true;
+}
+
+// Levels by falling gains of the last time, until none of those left can be better.
+static void EvaluateOffer(const Selection* selection, size_t candidate, Offer* offer)
+{
+    const int32_t present = selection->cut->triangles[candidate];
+    const LevelList list = ListNextLevels(selection, candidate);
+    if (!offer->isKnown) {
+        GuessGains(selection, candidate, offer);
+    }
+    bool isDone[MAX_LEVELS] = {false};
+    double best = 0.0;
+    int32_t bestLevel = present;
+    while (!pvtIsCancelled(selection->context)) {
+        int next = -1;
+        for (int l = 0; l < list.count; ++l) {
+            if (!isDone[l] && (next < 0 || offer->gains[l] > offer->gains[next])) {
+                next = l;
+            }
+        }
+        if (next < 0 || (double)offer->gains[next] < best) {
+            break;
+        }
+        isDone[next] = true;
+        const int32_t level = list.levels[next];
+        const double gain = GetGain(selection, candidate, level) / (level - present);
+        offer->gains[next] = (float)gain;
+        if (gain > best || (gain == best && level < bestLevel)) {
+            best = gain;
+            bestLevel = level;
+        }
+    }
+    offer->gain = best;
+    offer->level = bestLevel;
+    offer->fresh = true;
+}
+
 static void EvaluateHead(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     Selection* selection = taskData;
     for (size_t i = begin; i < end; ++i) {
         const size_t candidate = selection->head[i];
-        const int32_t present = selection->cut->triangles[candidate];
-        int32_t most = selection->candidates->triangles[candidate];
-        most = most - present > selection->left ? present + selection->left : most;
-        most = most > 254 ? 254 : most;
-        int32_t levels[MAX_LEVELS];
-        const int count = ListLevels(present, most, levels);
-        Offer best = {.gain = 0.0, .level = present, .fresh = true};
-        for (int l = 0; l < count && !pvtIsCancelled(selection->context); ++l) {
-            const double gain = GetGain(selection, candidate, levels[l]) / (levels[l] - present);
-            if (gain > best.gain) {
-                best.gain = gain;
-                best.level = levels[l];
-            }
-        }
-        selection->offers[candidate] = best;
+        EvaluateOffer(selection, candidate, &selection->offers[candidate]);
     }
 }
 
@@ -162,6 +218,7 @@ static void Accept(Selection* selection, size_t candidate)
         selection->offers[c].fresh = false;
     }
     selection->offers[candidate].gain = HUGE_VAL;
+    selection->offers[candidate].isKnown = false;
 }
 
 // From above: the measure of a disc of the link's area, seen from every view.
@@ -189,7 +246,8 @@ static void GuessOffers(Selection* selection)
                                 pvtPlane_GetAreaScale(plane);
             const double gain = seen * area * sqrt(area) / (3.0 * sqrt(3.14159265358979323846));
             if (gain / levels[l] > selection->offers[c].gain) {
-                selection->offers[c] = (Offer){gain / levels[l], levels[l], false};
+                selection->offers[c].gain = gain / levels[l];
+                selection->offers[c].level = levels[l];
             }
         }
     }

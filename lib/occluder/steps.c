@@ -298,7 +298,7 @@ static SearchSize GetSearchSize(const pvtBuild* build)
     const bool isFast = build->options->effort == PVT_EFFORT_FAST;
     // What ascends needs no more than a start, and leaves it far behind.
     if (pvtMayAscend(build)) {
-        return isFast ? (SearchSize){12, 16, 4, 8} : (SearchSize){16, 16, 8, 16};
+        return isFast ? (SearchSize){6, 16, 4, 8} : (SearchSize){16, 16, 8, 16};
     }
     const pvtPlanOptions whole = pvtDefaultPlanOptions();
     // A third of the candidates: in a short search the others hardly count.

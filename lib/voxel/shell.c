@@ -41,6 +41,7 @@ typedef struct Shell {
     size_t listCount;
     uint64_t* allowed; // the outcome
     uint8_t* isOpen;   // whether a voxel is beside one in which the waves meet
+    uint8_t* isMixed;  // whether it has cells of its own
 } Shell;
 
 // Several workers may mark the same.
@@ -331,32 +332,6 @@ static void FindOpenings(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
-static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
-{
-    const size_t count = shell->touched->count;
-    shell->places = pvtAllocate(context, count, sizeof *shell->places);
-    shell->neighbours = pvtAllocate(context, count, sizeof *shell->neighbours);
-    shell->waves = pvtAllocate(context, count, sizeof *shell->waves);
-    shell->next = pvtAllocate(context, count, sizeof *shell->next);
-    shell->list = pvtAllocate(context, count, sizeof *shell->list);
-    shell->woken = pvtAllocate(context, count, sizeof *shell->woken);
-    shell->wokenBlocks = pvtAllocate(context, count / BLOCK + 1, sizeof *shell->wokenBlocks);
-    shell->allowed = pvtAllocate(context, count, sizeof *shell->allowed);
-    shell->isOpen = pvtAllocate(context, count, sizeof *shell->isOpen);
-    if (shell->places == NULL || shell->neighbours == NULL || shell->waves == NULL ||
-        shell->next == NULL || shell->list == NULL || shell->woken == NULL ||
-        shell->wokenBlocks == NULL || shell->allowed == NULL || shell->isOpen == NULL) {
-        return pvtContext_GetStatus(context);
-    }
-    pvtParallelFor(context, ListLayers, (size_t)shell->touched->voxels.frame.size[2], 4, shell);
-    const pvtStatus status = RunWaves(context, shell);
-    if (status == PVT_OK) {
-        pvtParallelFor(context, JudgeVoxels, count, CANCEL_INTERVAL, shell);
-        pvtParallelFor(context, FindOpenings, count, CANCEL_INTERVAL, shell);
-    }
-    return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
-}
-
 // Not inside, but not outside either. Around an opening there is no border: one could walk around
 // the edge of the surface there, to its other side.
 static uint64_t GetBorder(const Shell* shell, size_t voxel)
@@ -383,6 +358,44 @@ static bool IsMixed(const Shell* shell, size_t voxel)
                                       : shell->allowed[voxel] != ~UINT64_C(0);
 }
 
+static void FindMixed(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const Shell* shell = taskData;
+    for (size_t i = begin; i < end; ++i) {
+        shell->isMixed[i] = IsMixed(shell, i) ? 1 : 0;
+    }
+}
+
+static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
+{
+    const size_t count = shell->touched->count;
+    shell->places = pvtAllocateUnset(context, count, sizeof *shell->places);
+    shell->neighbours = pvtAllocateUnset(context, count, sizeof *shell->neighbours);
+    shell->waves = pvtAllocate(context, count, sizeof *shell->waves);
+    shell->next = pvtAllocateUnset(context, count, sizeof *shell->next);
+    shell->list = pvtAllocateUnset(context, count, sizeof *shell->list);
+    shell->woken = pvtAllocate(context, count, sizeof *shell->woken);
+    shell->wokenBlocks = pvtAllocate(context, count / BLOCK + 1, sizeof *shell->wokenBlocks);
+    shell->allowed = pvtAllocateUnset(context, count, sizeof *shell->allowed);
+    shell->isOpen = pvtAllocate(context, count, sizeof *shell->isOpen);
+    shell->isMixed = pvtAllocateUnset(context, count, sizeof *shell->isMixed);
+    if (shell->places == NULL || shell->neighbours == NULL || shell->waves == NULL ||
+        shell->next == NULL || shell->list == NULL || shell->woken == NULL ||
+        shell->wokenBlocks == NULL || shell->allowed == NULL || shell->isOpen == NULL ||
+        shell->isMixed == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    pvtParallelFor(context, ListLayers, (size_t)shell->touched->voxels.frame.size[2], 4, shell);
+    const pvtStatus status = RunWaves(context, shell);
+    if (status == PVT_OK) {
+        pvtParallelFor(context, JudgeVoxels, count, CANCEL_INTERVAL, shell);
+        pvtParallelFor(context, FindOpenings, count, CANCEL_INTERVAL, shell);
+        pvtParallelFor(context, FindMixed, count, CANCEL_INTERVAL, shell);
+    }
+    return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
+}
+
 // Whole voxels become allowed; those with some cells are kept with them.
 static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid* allowed,
                             pvtCellGrid* cells)
@@ -393,7 +406,7 @@ static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid*
         return pvtContext_GetStatus(context);
     }
     for (size_t i = 0; i < count; ++i) {
-        if (IsMixed(shell, i)) {
+        if (shell->isMixed[i] != 0) {
             const uint16_t* place = shell->places[i];
             pvtSetBit(pvtBitGrid_GetRow(&mixed, place[1], place[2]), place[0]);
         }
@@ -410,7 +423,7 @@ static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid*
     // The shell's voxels are in the same order as those that are kept.
     size_t next = 0;
     for (size_t i = 0; i < count; ++i) {
-        if (IsMixed(shell, i)) {
+        if (shell->isMixed[i] != 0) {
             cells->cells[next] = shell->allowed[i];
             cells->border[next++] = GetBorder(shell, i);
         } else if (shell->allowed[i] != 0) {
@@ -432,6 +445,7 @@ static void FreeShell(pvtContext* context, Shell* shell)
     pvtRelease(context, shell->wokenBlocks);
     pvtRelease(context, shell->allowed);
     pvtRelease(context, shell->isOpen);
+    pvtRelease(context, shell->isMixed);
 }
 
 pvtStatus pvtRefineAllowedGrid(pvtContext* context, const pvtMesh* mesh, const pvtSolid* solid,
