@@ -59,7 +59,9 @@ static float LimitReach(const pvtAscent* ascent, const float corner[3])
 static void MoveCorners(pvtAscent* ascent)
 {
     pvtTriangleSet* set = &ascent->set;
+    float* steps = ascent->contacts.steps;
     float most = 0.0F;
+    memset(steps, 0, (size_t)set->cornerCount * sizeof *steps);
     for (int c = 0; c < set->cornerCount; ++c) {
         float* speed = ascent->speeds[c];
         float square = 0.0F;
@@ -74,9 +76,13 @@ static void MoveCorners(pvtAscent* ascent)
     for (int c = 0; c < set->cornerCount && most > 0.0F; ++c) {
         const float scale = LimitReach(ascent, set->corners[c]) /
                             (sqrtf(ascent->squares[c]) + LEAST_PULL * sqrtf(most));
+        float square = 0.0F;
         for (int axis = 0; axis < 3 && !set->isFixed[c]; ++axis) {
-            set->corners[c][axis] += scale * ascent->speeds[c][axis];
+            const float step = scale * ascent->speeds[c][axis];
+            set->corners[c][axis] += step;
+            square += step * step;
         }
+        steps[c] = sqrtf(square);
     }
 }
 

@@ -18,6 +18,7 @@ static const float FARTHEST = 0.67F; // of the longest side: from the middle to 
 // Pieces are not cut further below this: what lies along a wall as a whole would be cut into too
 // many.
 static const float PART = 1.0F / 12.0F; // of the triangle's side
+static const float STEEPEST = 1.25F;    // [vx] that depths change by along a voxel
 
 void pvtContactSet_Free(pvtContext* context, pvtContactSet* contacts)
 {
@@ -26,6 +27,7 @@ void pvtContactSet_Free(pvtContext* context, pvtContactSet* contacts)
     pvtRelease(context, contacts->known);
     pvtRelease(context, contacts->kinds);
     pvtRelease(context, contacts->pushed);
+    pvtRelease(context, contacts->steps);
     *contacts = (pvtContactSet){0};
 }
 
@@ -39,8 +41,9 @@ pvtStatus pvtCreateContacts(pvtContext* context, int triangleCapacity, pvtContac
     contacts->known = pvtAllocate(context, points, sizeof *contacts->known);
     contacts->kinds = pvtAllocate(context, triangles, sizeof *contacts->kinds);
     contacts->pushed = pvtAllocate(context, 3 * triangles, sizeof *contacts->pushed);
+    contacts->steps = pvtAllocate(context, 3 * triangles, sizeof *contacts->steps);
     if (contacts->contacts == NULL || contacts->counts == NULL || contacts->known == NULL ||
-        contacts->kinds == NULL || contacts->pushed == NULL) {
+        contacts->kinds == NULL || contacts->pushed == NULL || contacts->steps == NULL) {
         pvtContactSet_Free(context, contacts);
         return pvtContext_GetStatus(context);
     }
@@ -322,6 +325,18 @@ static bool HasMoved(const pvtContactSet* contacts, const pvtTriangleSet* set,
            contacts->pushed[corners[2]] > contact->looked;
 }
 
+// Whether a contact may have left the inside by its corners' steps.
+static bool MayBeOutside(const pvtContactSet* contacts, const pvtTriangleSet* set,
+                         const pvtContact* contact)
+{
+    const uint32_t* corners = set->triangles[contact->triangle];
+    float step = 0.0F;
+    for (int k = 0; k < 3; ++k) {
+        step += contact->shares[k] * contacts->steps[corners[k]];
+    }
+    return contact->depth < STEEPEST * step;
+}
+
 void pvtPushInside(pvtContactSet* contacts, const pvtField* field, int sweeps, pvtTriangleSet* set)
 {
     uint32_t pushes = 0;
@@ -329,7 +344,11 @@ void pvtPushInside(pvtContactSet* contacts, const pvtField* field, int sweeps, p
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (int i = 0; i < contacts->count; ++i) {
             pvtContact* contact = &contacts->contacts[i];
-            if (sweep > 0 && !HasMoved(contacts, set, contact)) {
+            if (sweep == 0) {
+                contact->looked = 0;
+            }
+            if (!HasMoved(contacts, set, contact) &&
+                (sweep > 0 || !MayBeOutside(contacts, set, contact))) {
                 continue;
             }
             float point[3], inward[3];

@@ -28,6 +28,8 @@ typedef struct pvtContactSet {
     uint16_t* kinds;   ///< of each triangle: bits of the kinds that are known
     uint32_t round;    ///< how often contacts were looked for
     uint32_t* pushed;  ///< of each corner: the last push that moved it, counted from 1
+    float* steps;      ///< [vx] of each corner: how far it has moved since depths were told; the
+                       ///< caller's to fill in
 } pvtContactSet;
 
 typedef struct pvtContactOptions {
@@ -49,7 +51,8 @@ void pvtUpdateContacts(const pvtField* field, const pvtTriangleSet* set, pvtCont
 /// [vx] outwards, and as little else as possible: `sweeps` passes over all contacts.
 void pvtSlideAlong(const pvtContactSet* contacts, float band, const pvtTriangleSet* set, int sweeps,
                    float (*velocities)[3]);
-/// Moves corners so that no contact is outside.
+/// Moves corners so that no contact is outside. Contacts that are deeper than their corners' steps
+/// could lead are not looked at.
 void pvtPushInside(pvtContactSet* contacts, const pvtField* field, int sweeps, pvtTriangleSet* set);
 
 /// Moves the corners of a contact's triangle so that its point goes inwards by `amount` [vx].
