@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Voxels at the border of the set ones are splatted as points, close enough to each other to leave
-// no pixel free between them: much faster than drawing the faces between them.
+// no pixel free between them: much faster than drawing the faces between them. They are kept by
+// blocks, since a block behind pixels that are set already has nothing to add.
 #include "ceiling.h"
 #include "points.h"
 
@@ -10,11 +11,27 @@
 #include "occlusion/distance.h"
 #include "occlusion/mask.h"
 #include "voxel/bit_grid.h"
+#include "voxel/cell_grid.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MANY_SPLITS = 6 }; // along a voxel: with more, its faces are drawn instead
+enum {
+    MANY_SPLITS = 6, // along a voxel: with more, its faces are drawn instead
+    BLOCK = 8,       // [vx] along a side
+    ROWS = BLOCK * BLOCK,
+};
+
+// Points from `first` up to that of the next block.
+typedef struct Block {
+    uint16_t place[3]; // in blocks
+    size_t first;
+} Block;
+
+// What a layer of blocks has.
+typedef struct Layer {
+    size_t points, blocks;
+} Layer;
 
 typedef struct CeilingTask {
     pvtContext* context;
@@ -23,7 +40,8 @@ typedef struct CeilingTask {
     int size;
     pvtGridFrame frame; // of the points
     float* points[3];   // [vx] along each axis
-    size_t pointCount;
+    Block* blocks;      // one more at the end
+    size_t blockCount;
     const uint32_t* table;
     double* results; // one a view
 } CeilingTask;
@@ -56,8 +74,10 @@ static uint64_t GetBorderWord(const pvtBitGrid* grid, const pvtCellGrid* cells, 
 
 // Counts, and stores when there is room.
 typedef struct PointList {
-    float** points; // [vx] one array an axis
+    float* const* points; // [vx] one array an axis
     size_t count;
+    Block* blocks;
+    size_t blockCount;
 } PointList;
 
 static void AddPoint(PointList* list, pvtVec3 point)
@@ -70,31 +90,20 @@ static void AddPoint(PointList* list, pvtVec3 point)
     ++list->count;
 }
 
-static void ListBorder(const pvtBitGrid* grid, const pvtCellGrid* cells, int splits,
-                       PointList* list)
+static void AddVoxel(const int voxel[3], int splits, PointList* list)
 {
     const int each = splits * splits * splits;
-    for (int z = 0; z < grid->frame.size[2]; ++z) {
-        for (int y = 0; y < grid->frame.size[1]; ++y) {
-            for (size_t word = 0; word < grid->wordsPerRow; ++word) {
-                uint64_t border = GetBorderWord(grid, cells, word, y, z);
-                if (list->points == NULL) {
-                    list->count += (size_t)(pvtCountBits(border) * each);
-                    continue;
-                }
-                for (; border != 0; border &= border - 1) {
-                    const int x = (int)(word * 64) + __builtin_ctzll(border);
-                    for (int part = 0; part < each; ++part) {
-                        const int row = part / splits;
-                        const int layer = row / splits;
-                        const double dx = (part % splits + 0.5) / splits;
-                        const double dy = (row % splits + 0.5) / splits;
-                        const double dz = (layer + 0.5) / splits;
-                        AddPoint(list, (pvtVec3){x + dx, y + dy, z + dz});
-                    }
-                }
-            }
-        }
+    if (list->points == NULL) {
+        list->count += (size_t)each;
+        return;
+    }
+    for (int part = 0; part < each; ++part) {
+        const int row = part / splits;
+        const int layer = row / splits;
+        const double dx = (part % splits + 0.5) / splits;
+        const double dy = (row % splits + 0.5) / splits;
+        const double dz = (layer + 0.5) / splits;
+        AddPoint(list, (pvtVec3){voxel[0] + dx, voxel[1] + dy, voxel[2] + dz});
     }
 }
 
@@ -146,18 +155,98 @@ static void AddCells(const int voxel[3], uint64_t cells, int splits, PointList* 
     }
 }
 
-static void ListCells(const pvtCellGrid* grid, int splits, PointList* list)
+typedef struct ListTask {
+    const pvtBitGrid* grid;
+    const pvtCellGrid* cells; // null: none
+    int splits;
+    Layer* layers; // of each layer of blocks: what it has, then what comes before it
+    float* const* points;
+    Block* blocks;
+} ListTask;
+
+// Of the rows of some blocks along x, the voxels that are splatted, and those with cells.
+typedef struct RowWords {
+    uint64_t border[ROWS], finer[ROWS];
+    uint64_t any;
+} RowWords;
+
+static void GetRowWords(const ListTask* task, size_t word, int y, int z, RowWords* rows)
 {
-    const pvtBitGrid* voxels = &grid->voxels;
-    for (size_t word = 0, index = 0; word < voxels->wordCount; ++word) {
-        const int row = (int)(word / voxels->wordsPerRow);
-        const int first = (int)(word % voxels->wordsPerRow) * 64;
-        for (uint64_t bits = voxels->words[word]; bits != 0; bits &= bits - 1, ++index) {
-            const int voxel[3] = {first + __builtin_ctzll(bits), row % voxels->frame.size[1],
-                                  row / voxels->frame.size[1]};
-            const uint64_t border = grid->border != NULL ? grid->border[index] : 0;
-            AddCells(voxel, grid->cells[index] | border, splits, list);
+    const int* size = task->grid->frame.size;
+    rows->any = 0;
+    for (int r = 0; r < ROWS; ++r) {
+        const int rowY = y + r % BLOCK, rowZ = z + r / BLOCK;
+        rows->border[r] = rows->finer[r] = 0;
+        if (rowY < size[1] && rowZ < size[2]) {
+            rows->border[r] = GetBorderWord(task->grid, task->cells, word, rowY, rowZ);
+            rows->finer[r] =
+                task->cells != NULL ? pvtBitGrid_GetRow(&task->cells->voxels, rowY, rowZ)[word] : 0;
         }
+        rows->any |= rows->border[r] | rows->finer[r];
+    }
+}
+
+static void ListBlock(const ListTask* task, const RowWords* rows, const int corner[3],
+                      PointList* list)
+{
+    if (list->blocks != NULL) {
+        list->blocks[list->blockCount] =
+            (Block){{(uint16_t)(corner[0] / BLOCK), (uint16_t)(corner[1] / BLOCK),
+                     (uint16_t)(corner[2] / BLOCK)},
+                    list->count};
+    }
+    ++list->blockCount;
+    const int shift = corner[0] % 64;
+    for (int r = 0; r < ROWS; ++r) {
+        int voxel[3] = {0, corner[1] + r % BLOCK, corner[2] + r / BLOCK};
+        for (unsigned bits = rows->border[r] >> shift & 0xFF; bits != 0; bits &= bits - 1) {
+            voxel[0] = corner[0] + __builtin_ctz(bits);
+            AddVoxel(voxel, task->splits, list);
+        }
+        for (unsigned bits = rows->finer[r] >> shift & 0xFF; bits != 0; bits &= bits - 1) {
+            voxel[0] = corner[0] + __builtin_ctz(bits);
+            const size_t index = pvtCellGrid_Rank(task->cells, voxel[0], voxel[1], voxel[2]);
+            const uint64_t border = task->cells->border != NULL ? task->cells->border[index] : 0;
+            AddCells(voxel, task->cells->cells[index] | border, task->splits, list);
+        }
+    }
+}
+
+static void ListLayer(const ListTask* task, int z, PointList* list)
+{
+    const pvtBitGrid* grid = task->grid;
+    for (int y = 0; y < grid->frame.size[1]; y += BLOCK) {
+        for (size_t word = 0; word < grid->wordsPerRow; ++word) {
+            RowWords rows;
+            GetRowWords(task, word, y, z, &rows);
+            for (int x = 0; x < 64; x += BLOCK) {
+                if ((rows.any >> x & 0xFF) != 0) {
+                    ListBlock(task, &rows, (int[3]){(int)word * 64 + x, y, z}, list);
+                }
+            }
+        }
+    }
+}
+
+static void CountLayers(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const ListTask* task = taskData;
+    for (size_t l = begin; l < end; ++l) {
+        PointList list = {0};
+        ListLayer(task, (int)l * BLOCK, &list);
+        task->layers[l] = (Layer){list.count, list.blockCount};
+    }
+}
+
+static void StoreLayers(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const ListTask* task = taskData;
+    for (size_t l = begin; l < end; ++l) {
+        PointList list = {task->points, task->layers[l].points, task->blocks,
+                          task->layers[l].blocks};
+        ListLayer(task, (int)l * BLOCK, &list);
     }
 }
 
@@ -174,21 +263,67 @@ static pvtPointProjection MakeProjection(const pvtMaskFrame* frame, const pvtGri
     return projection;
 }
 
-static void SplatPoints(const CeilingTask* task, const pvtMaskFrame* frame, uint64_t* rows)
+static int ClampToMask(float value, int size)
 {
-    const pvtPointProjection projection = MakeProjection(frame, &task->frame);
+    return value <= 0.0F ? 0 : value >= (float)size ? size - 1 : (int)value;
+}
+
+// Whether all pixels are set that points of a block may lie in.
+static bool IsBlockCovered(const CeilingTask* task, const pvtPointProjection* projection,
+                           const Block* block, const float reach[2], const uint64_t* rows)
+{
+    const float center[3] = {(float)(BLOCK * block->place[0]) + 0.5F * BLOCK,
+                             (float)(BLOCK * block->place[1]) + 0.5F * BLOCK,
+                             (float)(BLOCK * block->place[2]) + 0.5F * BLOCK};
+    float x = projection->offset[0], y = projection->offset[1];
+    for (int axis = 0; axis < 3; ++axis) {
+        x += center[axis] * projection->right[axis];
+        y += center[axis] * projection->up[axis];
+    }
+    const size_t words = (size_t)task->size / 64;
+    const size_t first = (size_t)ClampToMask(x - reach[0], task->size);
+    const size_t last = (size_t)ClampToMask(x + reach[0], task->size);
+    const int end = ClampToMask(y + reach[1], task->size);
+    for (int row = ClampToMask(y - reach[1], task->size); row <= end; ++row) {
+        if (!pvtIsBitRangeSet(rows + (size_t)row * words, first, last + 1)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void SplatBlock(const CeilingTask* task, const pvtPointProjection* projection,
+                       const Block* block, uint64_t* rows)
+{
     const size_t words = (size_t)task->size / 64;
     const float size = (float)task->size;
+    const size_t end = block[1].first;
     float places[2][PVT_POINT_GROUP];
-    for (size_t first = 0; first < task->pointCount; first += PVT_POINT_GROUP) {
-        const size_t left = task->pointCount - first,
-                     count = left < PVT_POINT_GROUP ? left : PVT_POINT_GROUP;
-        pvtProjectPoints(&projection, task->points, first, count, places);
+    for (size_t first = block->first; first < end; first += PVT_POINT_GROUP) {
+        const size_t left = end - first;
+        const size_t count = left < PVT_POINT_GROUP ? left : PVT_POINT_GROUP;
+        pvtProjectPoints(projection, task->points, first, count, places);
         for (size_t i = 0; i < count; ++i) {
             const float x = places[0][i], y = places[1][i];
             if (x >= 0.0F && y >= 0.0F && x < size && y < size) {
                 pvtSetBit(rows + (size_t)y * words, (size_t)x);
             }
+        }
+    }
+}
+
+static void SplatPoints(const CeilingTask* task, const pvtMaskFrame* frame, uint64_t* rows)
+{
+    static const float MORE = 0.01F; // [px] than rounding could move a point by
+    const pvtPointProjection projection = MakeProjection(frame, &task->frame);
+    float reach[2] = {MORE, MORE};
+    for (int axis = 0; axis < 3; ++axis) {
+        reach[0] += 0.5F * BLOCK * fabsf(projection.right[axis]);
+        reach[1] += 0.5F * BLOCK * fabsf(projection.up[axis]);
+    }
+    for (size_t b = 0; b < task->blockCount; ++b) {
+        if (!IsBlockCovered(task, &projection, &task->blocks[b], reach, rows)) {
+            SplatBlock(task, &projection, &task->blocks[b], rows);
         }
     }
 }
@@ -242,13 +377,50 @@ static pvtStatus MeasureFaces(pvtContext* context, const CeilingTask* task, cons
     return status;
 }
 
-static void ListPoints(const pvtBitGrid* grid, const pvtCellGrid* cells, int splits,
-                       PointList* list)
+static pvtStatus ListPoints(pvtContext* context, const pvtBitGrid* grid, const pvtCellGrid* cells,
+                            int splits, CeilingTask* task)
 {
-    ListBorder(grid, cells, splits, list);
-    if (cells != NULL) {
-        ListCells(cells, splits, list);
+    const size_t layerCount = ((size_t)grid->frame.size[2] + BLOCK - 1) / BLOCK;
+    ListTask list = {.grid = grid, .cells = cells, .splits = splits};
+    list.layers = pvtAllocate(context, layerCount, sizeof *list.layers);
+    if (list.layers == NULL) {
+        return pvtContext_GetStatus(context);
     }
+    pvtParallelFor(context, CountLayers, layerCount, 1, &list);
+    Layer all = {0};
+    for (size_t l = 0; l < layerCount; ++l) {
+        const Layer here = list.layers[l];
+        list.layers[l] = all;
+        all.points += here.points;
+        all.blocks += here.blocks;
+    }
+    task->blocks = pvtAllocate(context, all.blocks + 1, sizeof *task->blocks);
+    bool hasRoom = task->blocks != NULL;
+    for (int axis = 0; axis < 3; ++axis) {
+        task->points[axis] = pvtAllocateUnset(context, all.points, sizeof *task->points[axis]);
+        hasRoom = hasRoom && task->points[axis] != NULL;
+    }
+    if (hasRoom) {
+        list.points = task->points;
+        list.blocks = task->blocks;
+        pvtParallelFor(context, StoreLayers, layerCount, 1, &list);
+        task->blocks[all.blocks].first = all.points;
+        task->blockCount = all.blocks;
+    }
+    pvtRelease(context, list.layers);
+    return hasRoom ? PVT_OK : pvtContext_GetStatus(context);
+}
+
+static pvtStatus SumViews(pvtContext* context, CeilingTask* task, double* measure)
+{
+    pvtParallelFor(context, MeasureViews, task->views->count, 1, task);
+    if (pvtIsCancelled(context)) {
+        return pvtFailCancelled(context);
+    }
+    for (size_t v = 0; v < task->views->count; ++v) {
+        *measure += task->results[v];
+    }
+    return PVT_OK;
 }
 
 pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* options,
@@ -258,38 +430,27 @@ pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* optio
     CeilingTask task = {.context = context,
                         .views = options->views,
                         .bounds = options->bounds,
-                        .size = options->size};
+                        .size = options->size,
+                        .frame = grid->frame};
     cells = cells != NULL && cells->count > 0 ? cells : NULL;
     const int splits =
         GetSplits(options->views, options->bounds, options->size, grid->frame.voxelSize);
     if (splits > MANY_SPLITS) {
         return MeasureFaces(context, &task, grid, cells, measure);
     }
-    PointList list = {0};
-    ListPoints(grid, cells, splits, &list);
     uint32_t* table = pvtAllocate(context, pvtGetDistanceTableCount(task.size), sizeof *table);
     task.results = pvtAllocate(context, task.views->count, sizeof *task.results);
-    bool hasRoom = table != NULL && task.results != NULL;
-    for (int axis = 0; axis < 3; ++axis) {
-        task.points[axis] = pvtAllocate(context, list.count, sizeof *task.points[axis]);
-        hasRoom = hasRoom && task.points[axis] != NULL;
-    }
-    pvtStatus status = hasRoom ? PVT_OK : pvtContext_GetStatus(context);
+    pvtStatus status = table != NULL && task.results != NULL
+                           ? ListPoints(context, grid, cells, splits, &task)
+                           : pvtContext_GetStatus(context);
     if (status == PVT_OK) {
-        list = (PointList){task.points, 0};
-        ListPoints(grid, cells, splits, &list);
         pvtFillDistanceTable(task.size, 1, table);
-        task.frame = grid->frame;
-        task.pointCount = list.count;
         task.table = table;
-        pvtParallelFor(context, MeasureViews, task.views->count, 1, &task);
-        status = pvtIsCancelled(context) ? pvtFailCancelled(context) : PVT_OK;
-        for (size_t v = 0; v < task.views->count && status == PVT_OK; ++v) {
-            *measure += task.results[v];
-        }
+        status = SumViews(context, &task, measure);
     }
     pvtRelease(context, task.results);
     pvtRelease(context, table);
+    pvtRelease(context, task.blocks);
     for (int axis = 0; axis < 3; ++axis) {
         pvtRelease(context, task.points[axis]);
     }
