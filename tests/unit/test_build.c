@@ -120,20 +120,21 @@ static void an_occluder_never_hides_more_than_the_solid_at_any_resolution(void**
     DestroyTestContext(context);
 }
 
-static pvtQuadScore ScoreTorus(pvtContext* context, const pvtMesh* torus, double tolerance)
+static pvtQuadScore ScoreOccluder(pvtContext* context, const pvtMesh* mesh, int budget,
+                                  double tolerance)
 {
     pvtBuildOptions options = GetQuickOptions();
     options.resolution = 64;
-    options.budget = 48;
+    options.budget = budget;
     options.tolerance = (pvtLength){tolerance, true};
     pvtOccluder occluder;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, torus, &occluder, NULL));
+    CHECK_OK(context, pvtBuildOccluder(context, &options, mesh, &occluder, NULL));
     pvtEvaluateOptions evaluate = pvtDefaultEvaluateOptions();
     evaluate.views = 32;
     evaluate.quads = 4000;
     pvtEvaluation evaluation;
     CHECK_OK(context,
-             pvtEvaluateOccluders(context, &evaluate, torus, &occluder.mesh, 1, &evaluation));
+             pvtEvaluateOccluders(context, &evaluate, mesh, &occluder.mesh, 1, &evaluation));
     const pvtQuadScore score = evaluation.occluders[0].uniform;
     pvtEvaluation_Free(context, &evaluation);
     pvtOccluder_Free(context, &occluder);
@@ -147,13 +148,29 @@ static void a_tolerance_hides_much_more_and_hardly_anything_that_is_seen(void** 
     pvtContext* context = CreateTestContext(2);
     pvtMesh torus;
     MakeTorus(context, &torus);
-    const pvtQuadScore strict = ScoreTorus(context, &torus, 0.0);
-    const pvtQuadScore loose = ScoreTorus(context, &torus, 1.0);
+    const pvtQuadScore strict = ScoreOccluder(context, &torus, 48, 0.0);
+    const pvtQuadScore loose = ScoreOccluder(context, &torus, 48, 1.0);
     assert_true(strict.precision == 1.0);
     assert_true(loose.precision > 0.997);
     assert_true(loose.recall > strict.recall + 0.1);
     assert_true(loose.recall > 0.9);
     pvtMesh_Free(context, &torus);
+    DestroyTestContext(context);
+}
+
+// A wall has no inside, but touched voxels that it hides something by.
+static void a_wall_is_covered_within_a_tolerance(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    const pvtVec3 corners[] = {{0, 0, 0}, {3, 0, 1}, {3, 2, 1}, {0, 2, 0}};
+    const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    pvtMesh wall;
+    CHECK_OK(context, pvtCreateMesh(context, corners, 4, indices, 2, &wall));
+    const pvtQuadScore score = ScoreOccluder(context, &wall, 4, 1.0);
+    assert_true(score.precision > 0.99);
+    assert_true(score.recall > 0.95);
+    pvtMesh_Free(context, &wall);
     DestroyTestContext(context);
 }
 
@@ -316,6 +333,7 @@ int main(void)
         cmocka_unit_test(a_cube_at_twelve_triangles_is_covered_to_within_a_voxel),
         cmocka_unit_test(an_occluder_never_hides_more_than_the_solid_at_any_resolution),
         cmocka_unit_test(a_tolerance_hides_much_more_and_hardly_anything_that_is_seen),
+        cmocka_unit_test(a_wall_is_covered_within_a_tolerance),
         cmocka_unit_test(the_budget_holds_and_nothing_leaves_the_allowed_voxels),
         cmocka_unit_test(the_hole_of_a_torus_stays_open),
         cmocka_unit_test(threads_do_not_change_a_byte),
