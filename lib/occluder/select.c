@@ -162,6 +162,8 @@ static void EvaluateOffer(const Selection* selection, size_t candidate, Offer* o
     offer->gain = best;
     offer->level = bestLevel;
     offer->fresh = true;
+    // With a single triangle left the first level is another than with more.
+    offer->isKnown = present > 0 || selection->left >= OPENING;
 }
 
 static void EvaluateHead(size_t begin, size_t end, int worker, void* taskData)
