@@ -4,6 +4,11 @@
 #include "steps.h"
 
 #include "base/context.h"
+#include "voxel/bit_grid.h"
+
+// Voxels along the longest side beyond which a quarter of one is too little to matter for a goal,
+// which is looked at in nodes of four voxels and more (ascent.c), and cells would take most memory.
+enum { FINEST_GOAL = 512 };
 
 bool pvtMayAscend(const pvtBuild* build)
 {
@@ -55,7 +60,14 @@ static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal
 {
     *goal = (Goal){.voxels = build->hiding.words != NULL ? &build->hiding : &build->allowed,
                    .cells = pvtGetInterior(build).cells};
-    return build->stats.tolerance > 0.0 ? MakeGoalWithin(context, build, goal) : PVT_OK;
+    if (build->stats.tolerance == 0.0) {
+        return PVT_OK;
+    }
+    if (pvtGetLongestSide(build->solid.inside.frame.size) > FINEST_GOAL) {
+        *goal = (Goal){.voxels = &build->solid.inside};
+        return PVT_OK;
+    }
+    return MakeGoalWithin(context, build, goal);
 }
 
 static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
