@@ -58,13 +58,14 @@ static pvtStatus MakeGoalWithin(pvtContext* context, const pvtBuild* build, Goal
 
 static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal)
 {
-    *goal = (Goal){.voxels = build->hiding.words != NULL ? &build->hiding : &build->allowed,
-                   .cells = pvtGetInterior(build).cells};
+    *goal = (Goal){0};
     if (build->stats.tolerance == 0.0) {
+        goal->voxels = build->hiding.words != NULL ? &build->hiding : &build->allowed;
+        goal->cells = pvtGetInterior(build).cells;
         return PVT_OK;
     }
     if (pvtGetLongestSide(build->solid.inside.frame.size) > FINEST_GOAL) {
-        *goal = (Goal){.voxels = &build->solid.inside};
+        goal->voxels = &build->solid.inside;
         return PVT_OK;
     }
     return MakeGoalWithin(context, build, goal);

@@ -102,29 +102,28 @@ typedef struct LevelList {
     int count;
 } LevelList;
 
-static LevelList ListNextLevels(const Selection* selection, size_t candidate)
+// Of those above the present one, with at most so many triangles more.
+static LevelList ListNextLevels(const Selection* selection, size_t candidate, int32_t left)
 {
     const int32_t present = selection->cut->triangles[candidate];
     int32_t most = selection->candidates->triangles[candidate];
-    most = most - present > selection->left ? present + selection->left : most;
+    most = most - present > left ? present + left : most;
     LevelList list;
     list.count = ListLevels(present, most > 254 ? 254 : most, list.levels);
     return list;
 }
 
 // Bounds for all levels from the gain of the last one: a shorter link lies in a longer one but for
-// a little.
+// a little. With a budget that ran low there are fewer levels now than there may be later.
 static void GuessGains(const Selection* selection, size_t candidate, Offer* offer)
 {
     static const double MORE = 1.1;
     const int32_t present = selection->cut->triangles[candidate];
-    // With a budget that ran low there are fewer levels now than there may be later.
-    const int32_t most = selection->candidates->triangles[candidate];
-    int32_t levels[MAX_LEVELS];
-    const int count = ListLevels(present, most > 254 ? 254 : most, levels);
-    const double gain = count > 0 ? GetGain(selection, candidate, levels[count - 1]) : 0.0;
-    for (int l = 0; l < count; ++l) {
-        offer->gains[l] = (float)(MORE * gain / (levels[l] - present));
+    const LevelList list = ListNextLevels(selection, candidate, INT32_MAX);
+    const double gain =
+        list.count > 0 ? GetGain(selection, candidate, list.levels[list.count - 1]) : 0.0;
+    for (int l = 0; l < list.count; ++l) {
+        offer->gains[l] = (float)(MORE * gain / (list.levels[l] - present));
     }
     offer->isKnown = true;
 }
@@ -133,7 +132,7 @@ static void GuessGains(const Selection* selection, size_t candidate, Offer* offe
 static void EvaluateOffer(const Selection* selection, size_t candidate, Offer* offer)
 {
     const int32_t present = selection->cut->triangles[candidate];
-    const LevelList list = ListNextLevels(selection, candidate);
+    const LevelList list = ListNextLevels(selection, candidate, selection->left);
     if (!offer->isKnown) {
         GuessGains(selection, candidate, offer);
     }
@@ -237,19 +236,17 @@ static void GuessOffers(Selection* selection)
             seen += view->weight * facing * sqrt(facing);
         }
         const double voxel = selection->candidates->frame.voxelSize / (1 << PVT_POINT_BITS);
-        int32_t levels[MAX_LEVELS];
-        int32_t most = selection->candidates->triangles[c];
-        most = most > selection->left ? selection->left : most;
-        const int count = ListLevels(0, most > 254 ? 254 : most, levels);
-        for (int l = 0; l < count; ++l) {
+        const LevelList list = ListNextLevels(selection, c, selection->left);
+        for (int l = 0; l < list.count; ++l) {
+            const int32_t level = list.levels[l];
             pvtPoint2 points[256];
-            const size_t n = pvtChainSet_GetLink(chains, c, levels[l], points);
+            const size_t n = pvtChainSet_GetLink(chains, c, level, points);
             const double area = 0.5 * (double)pvtGetLoopArea2(points, n) * voxel * voxel *
                                 pvtPlane_GetAreaScale(plane);
             const double gain = seen * area * sqrt(area) / (3.0 * sqrt(3.14159265358979323846));
-            if (gain / levels[l] > selection->offers[c].gain) {
-                selection->offers[c].gain = gain / levels[l];
-                selection->offers[c].level = levels[l];
+            if (gain / level > selection->offers[c].gain) {
+                selection->offers[c].gain = gain / level;
+                selection->offers[c].level = level;
             }
         }
     }

@@ -223,12 +223,17 @@ pvtStatus pvtFailNothingInside(pvtContext* context, const pvtBuild* build)
         resolution);
 }
 
+static bool IsPaper(const pvtBuild* build)
+{
+    return build->options->method == PVT_METHOD_PAPER;
+}
+
 pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
 {
     const pvtBuildOptions* options = build->options;
     pvtSolidOptions solid = pvtDefaultSolidOptions();
     solid.smallestHole = build->stats.smallestHole;
-    solid.strict = options->method == PVT_METHOD_PLANAR || build->stats.tolerance == 0.0;
+    solid.strict = !IsPaper(build) || build->stats.tolerance == 0.0;
     solid.ground = options->ground;
     solid.terrain = options->terrain;
     solid.up = options->up;
@@ -280,11 +285,6 @@ static pvtStatus CreateSlicer(pvtContext* context, pvtBuild* build, const pvtBit
         pvtMesh_Free(context, &voxelMesh);
     }
     return status;
-}
-
-static bool IsPaper(const pvtBuild* build)
-{
-    return build->options->method == PVT_METHOD_PAPER;
 }
 
 // How many candidates there are, from how many planes each is the best, and over how many views

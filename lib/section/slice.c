@@ -319,18 +319,31 @@ static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t
     return volume->cellWords[slicing->axis][pvtCellGrid_Rank(volume->cells, x, y, z)];
 }
 
-// Which of the 16 patches over a voxel's column (u, v) touch set cells only: bit i + 4 j.
-static inline uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
+// The voxels of a column that the patches over it reach into.
+typedef struct Reached {
+    int64_t voxel; // the lowest
+    int start;     // height in it of the lowest patch
+    int last;      // how many voxels above it the highest ends
+} Reached;
+
+static inline Reached FindReached(const CellSlicing* slicing, int u, int v)
 {
     const int64_t lowest =
         slicing->first + PVT_CELLS * (slicing->stepU * u + slicing->stepV * v) + slicing->least;
     const int64_t voxel = lowest >> HEIGHT_BITS;
-    const int64_t start = lowest - voxel * (INT64_C(1) << HEIGHT_BITS);
-    const int last = (int)((start + slicing->reach) >> HEIGHT_BITS);
+    const int start = (int)(lowest - voxel * (INT64_C(1) << HEIGHT_BITS));
+    return (Reached){voxel, start, (start + slicing->reach) >> HEIGHT_BITS};
+}
+
+// Which of the 16 patches over a voxel's column (u, v) touch set cells only: bit i + 4 j.
+static inline uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
+{
+    const Reached reached = FindReached(slicing, u, v);
+    const int start = reached.start;
     uint64_t cells[MAX_VOXELS] = {0};
     uint64_t any = 0;
-    for (int n = 0; n <= last; ++n) {
-        cells[n] = GetColumnCells(slicing, u, v, voxel + n);
+    for (int n = 0; n <= reached.last; ++n) {
+        cells[n] = GetColumnCells(slicing, u, v, reached.voxel + n);
         any |= cells[n];
     }
     if (any == 0) {
@@ -338,11 +351,11 @@ static inline uint64_t JudgePatches(const CellSlicing* slicing, int u, int v)
     }
     int low[PATCHES], high[PATCHES], clear[PATCHES] = {0};
     for (int i = 0; i < PATCHES; ++i) {
-        low[i] = ((int)start + slicing->rises[i]) >> CELL_HEIGHT_BITS;
-        high[i] = ((int)start + slicing->rises[i] + slicing->span) >> CELL_HEIGHT_BITS;
+        low[i] = (start + slicing->rises[i]) >> CELL_HEIGHT_BITS;
+        high[i] = (start + slicing->rises[i] + slicing->span) >> CELL_HEIGHT_BITS;
     }
-    const int top = (int)((start + slicing->reach) >> CELL_HEIGHT_BITS);
-    for (int level = (int)(start >> CELL_HEIGHT_BITS); level <= top; ++level) {
+    const int top = (start + slicing->reach) >> CELL_HEIGHT_BITS;
+    for (int level = start >> CELL_HEIGHT_BITS; level <= top; ++level) {
         const int row = (int)(~cells[level / PVT_CELLS] >> (PATCHES * (level % PVT_CELLS)) &
                               ((1 << PATCHES) - 1));
         for (int i = 0; i < PATCHES; ++i) {
@@ -404,18 +417,15 @@ static inline const uint64_t* FindTouched(const CellSlicing* slicing, TouchTable
 // each.
 static inline bool IsVoxelCovered(const CellSlicing* slicing, TouchTable* table, int u, int v)
 {
-    const int64_t lowest =
-        slicing->first + PVT_CELLS * (slicing->stepU * u + slicing->stepV * v) + slicing->least;
-    const int64_t voxel = lowest >> HEIGHT_BITS;
-    const int start = (int)(lowest - voxel * (INT64_C(1) << HEIGHT_BITS));
-    const int last = (start + slicing->reach) >> HEIGHT_BITS;
-    const int level = start >> CELL_HEIGHT_BITS;
-    const uint64_t* touched = FindTouched(slicing, table, start & ((1 << CELL_HEIGHT_BITS) - 1));
+    const Reached reached = FindReached(slicing, u, v);
+    const int level = reached.start >> CELL_HEIGHT_BITS;
+    const uint64_t* touched =
+        FindTouched(slicing, table, reached.start & ((1 << CELL_HEIGHT_BITS) - 1));
     uint64_t below = 0;
-    for (int n = 0; n <= last; ++n) {
+    for (int n = 0; n <= reached.last; ++n) {
         const uint64_t cells = touched[n] << (PATCHES * level) | below;
         below = level == 0 ? 0 : touched[n] >> (64 - PATCHES * level);
-        if (cells != 0 && (cells & ~GetColumnCells(slicing, u, v, voxel + n)) != 0) {
+        if (cells != 0 && (cells & ~GetColumnCells(slicing, u, v, reached.voxel + n)) != 0) {
             return false;
         }
     }
