@@ -20,7 +20,7 @@ tools=(gcc:gcc g++:g++ cmake:cmake ninja:ninja-build pkg-config:pkg-config)
 # assimp's CMake package asks for, nor on libgl1-mesa-dri, which holds the software rasteriser.
 packages=(libc6-dev zlib1g-dev libgl-dev libegl-dev libegl1 libosmesa6 libgl1-mesa-dri
     libtinygltf-dev nlohmann-json3-dev libassimp-dev libdraco-dev libmeshoptimizer-dev
-    libopenimageio-dev)
+    libopenimageio-dev libjemalloc-dev)
 if [ "$purpose" = test ]; then
     tools+=(clang:clang clang-format:clang-format clang-tidy:clang-tidy node:nodejs npm:npm
         chromium:chromium)

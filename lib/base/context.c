@@ -241,13 +241,19 @@ void* pvtAllocate(pvtContext* context, size_t count, size_t size)
 
 void* pvtReallocate(pvtContext* context, void* memory, size_t count, size_t size)
 {
-    void* grown = pvtAllocate(context, count, size);
-    if (grown == NULL || memory == NULL) {
-        return grown;
+    if (memory == NULL) {
+        return pvtAllocate(context, count, size);
+    }
+    char* grown = pvtAllocateUnset(context, count, size);
+    if (grown == NULL) {
+        return NULL;
     }
     const BlockHeader* header = (const BlockHeader*)memory - 1;
     const size_t old = header->size - sizeof(BlockHeader) - ALIGNMENT;
-    memcpy(grown, memory, old < count * size ? old : count * size);
+    const size_t whole = count * size;
+    const size_t kept = old < whole ? old : whole;
+    memcpy(grown, memory, kept);
+    memset(grown + kept, 0, whole - kept);
     pvtRelease(context, memory);
     return grown;
 }

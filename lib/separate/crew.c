@@ -38,7 +38,7 @@ typedef struct Worker {
 static void* Allocate(void* user, size_t size)
 {
     Worker* worker = user;
-    void* memory = pvtAllocate(worker->crew->parent, 1, size);
+    void* memory = pvtAllocateUnset(worker->crew->parent, 1, size);
     if (memory == NULL) {
         atomic_store(&worker->denied, pvtContext_GetStatus(worker->crew->parent));
     }
