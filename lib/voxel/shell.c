@@ -56,36 +56,66 @@ static void Wake(const Shell* shell, size_t voxel)
     Mark(&shell->wokenBlocks[voxel / BLOCK]);
 }
 
-static uint32_t FindNeighbour(const Shell* shell, int x, int y, int z)
-{
-    const int* size = shell->touched->voxels.frame.size;
-    if (x < 0 || y < 0 || z < 0 || x >= size[0] || y >= size[1] || z >= size[2]) {
-        return OUTSIDE;
-    }
-    const size_t index = pvtCellGrid_Find(shell->touched, x, y, z);
-    return index != PVT_NO_CELLS                            ? (uint32_t)index
-           : pvtBitGrid_Get(&shell->solid->inside, x, y, z) ? INSIDE
-                                                            : OUTSIDE;
-}
+// A row of voxels; null words for one beyond the grid.
+typedef struct Row {
+    const uint64_t *touched, *inside;
+    const uint32_t* ranks;
+    int size;
+} Row;
 
-static void ListLayer(Shell* shell, int z)
+static Row GetRow(const Shell* shell, int y, int z)
 {
     const pvtBitGrid* voxels = &shell->touched->voxels;
-    for (int y = 0; y < voxels->frame.size[1]; ++y) {
-        const uint64_t* row = pvtBitGrid_GetRow(voxels, y, z);
-        for (size_t w = 0; w < voxels->wordsPerRow; ++w) {
-            size_t index =
-                shell->touched->ranks[pvtGetRowIndex(voxels, y, z) * voxels->wordsPerRow + w];
-            for (uint64_t bits = row[w]; bits != 0; bits &= bits - 1, ++index) {
-                const int x = (int)(w * 64) + __builtin_ctzll(bits);
-                const uint32_t neighbours[SIDES] = {
-                    FindNeighbour(shell, x - 1, y, z), FindNeighbour(shell, x + 1, y, z),
-                    FindNeighbour(shell, x, y - 1, z), FindNeighbour(shell, x, y + 1, z),
-                    FindNeighbour(shell, x, y, z - 1), FindNeighbour(shell, x, y, z + 1)};
-                memcpy(shell->neighbours[index], neighbours, sizeof neighbours);
-                shell->places[index][0] = (uint16_t)x;
-                shell->places[index][1] = (uint16_t)y;
-                shell->places[index][2] = (uint16_t)z;
+    const int* size = voxels->frame.size;
+    if (y < 0 || z < 0 || y >= size[1] || z >= size[2]) {
+        return (Row){0};
+    }
+    const size_t first = pvtGetRowIndex(voxels, y, z) * voxels->wordsPerRow;
+    return (Row){voxels->words + first, shell->solid->inside.words + first,
+                 shell->touched->ranks + first, size[0]};
+}
+
+static uint32_t FindInRow(const Row* row, int x)
+{
+    if (x < 0 || x >= row->size) {
+        return OUTSIDE;
+    }
+    const size_t word = (size_t)x / 64;
+    const uint64_t bit = UINT64_C(1) << (x % 64);
+    return (row->touched[word] & bit) != 0
+               ? row->ranks[word] + (uint32_t)pvtCountBits(row->touched[word] & (bit - 1))
+           : (row->inside[word] & bit) != 0 ? INSIDE
+                                            : OUTSIDE;
+}
+
+static bool IsBesideWaves(const uint32_t neighbours[SIDES])
+{
+    bool isBeside = false;
+    for (int side = 0; side < SIDES; ++side) {
+        isBeside = isBeside || neighbours[side] >= INSIDE;
+    }
+    return isBeside;
+}
+
+static void ListRow(Shell* shell, int y, int z)
+{
+    const Row here = GetRow(shell, y, z);
+    const Row beside[4] = {GetRow(shell, y - 1, z), GetRow(shell, y + 1, z),
+                           GetRow(shell, y, z - 1), GetRow(shell, y, z + 1)};
+    for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
+        size_t index = here.ranks[w];
+        for (uint64_t bits = here.touched[w]; bits != 0; bits &= bits - 1, ++index) {
+            const int x = (int)(w * 64) + __builtin_ctzll(bits);
+            uint32_t* neighbours = shell->neighbours[index];
+            neighbours[0] = FindInRow(&here, x - 1);
+            neighbours[1] = FindInRow(&here, x + 1);
+            for (int side = 2; side < SIDES; ++side) {
+                neighbours[side] = FindInRow(&beside[side - 2], x);
+            }
+            shell->places[index][0] = (uint16_t)x;
+            shell->places[index][1] = (uint16_t)y;
+            shell->places[index][2] = (uint16_t)z;
+            if (IsBesideWaves(neighbours)) {
                 Wake(shell, index);
             }
         }
@@ -95,8 +125,11 @@ static void ListLayer(Shell* shell, int z)
 static void ListLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
+    Shell* shell = taskData;
     for (size_t z = begin; z < end; ++z) {
-        ListLayer(taskData, (int)z);
+        for (int y = 0; y < shell->touched->voxels.frame.size[1]; ++y) {
+            ListRow(shell, y, (int)z);
+        }
     }
 }
 
@@ -173,8 +206,31 @@ static void StepVoxels(size_t begin, size_t end, int worker, void* taskData)
                 near.inside |= SpreadAcross(there.inside, side);
             }
         }
-        shell->next[i].outside = free & near.outside;
-        shell->next[i].inside = free & near.inside & ~near.outside;
+        shell->next[k].outside = free & near.outside;
+        shell->next[k].inside = free & near.inside & ~near.outside;
+    }
+}
+
+// While other workers take cells of theirs: then it is up to one step late, with cells too many.
+static uint64_t GetFreeMeanwhile(const Shell* shell, size_t voxel)
+{
+    const Waves* waves = &shell->waves[voxel];
+    return ~shell->touched->cells[voxel] & ~__atomic_load_n(&waves->outside, __ATOMIC_RELAXED) &
+           ~__atomic_load_n(&waves->inside, __ATOMIC_RELAXED);
+}
+
+// Wakes the voxel and those beside it that have free cells next to these.
+static void WakeAround(const Shell* shell, size_t voxel, uint64_t taken)
+{
+    if ((Spread(taken) & GetFreeMeanwhile(shell, voxel)) != 0) {
+        Wake(shell, voxel);
+    }
+    for (int side = 0; side < SIDES; ++side) {
+        const uint32_t beside = shell->neighbours[voxel][side];
+        const uint64_t near = SpreadAcross(taken, side ^ 1);
+        if (near != 0 && beside < INSIDE && (near & GetFreeMeanwhile(shell, beside)) != 0) {
+            Wake(shell, beside);
+        }
     }
 }
 
@@ -184,18 +240,14 @@ static void TakeCells(size_t begin, size_t end, int worker, void* taskData)
     const Shell* shell = taskData;
     for (size_t k = begin; k < end; ++k) {
         const size_t i = shell->list[k];
-        const Waves next = shell->next[i];
+        const Waves next = shell->next[k];
         if ((next.outside | next.inside) == 0) {
             continue;
         }
-        shell->waves[i].outside |= next.outside;
-        shell->waves[i].inside |= next.inside;
-        Wake(shell, i);
-        for (int side = 0; side < SIDES; ++side) {
-            if (shell->neighbours[i][side] < INSIDE) {
-                Wake(shell, shell->neighbours[i][side]);
-            }
-        }
+        Waves* waves = &shell->waves[i];
+        __atomic_store_n(&waves->outside, waves->outside | next.outside, __ATOMIC_RELAXED);
+        __atomic_store_n(&waves->inside, waves->inside | next.inside, __ATOMIC_RELAXED);
+        WakeAround(shell, i, next.outside | next.inside);
     }
 }
 
@@ -245,41 +297,31 @@ static uint64_t Dilate(const uint64_t voxels[3], int axis)
 
 // Of the voxels x − 1, x and x + 1 of a row, which cells are outside. Of voxels that are next to
 // each other, the places are as well.
-static void GetOutsideOfThree(const Shell* shell, int x, int y, int z, uint64_t outside[3])
+static void GetOutsideOfThree(const Shell* shell, const Row* row, int x, uint64_t outside[3])
 {
-    const int* size = shell->touched->voxels.frame.size;
-    if (y < 0 || z < 0 || y >= size[1] || z >= size[2]) {
-        outside[0] = outside[1] = outside[2] = ~UINT64_C(0);
-        return;
-    }
-    const uint64_t* touched = pvtBitGrid_GetRow(&shell->touched->voxels, y, z);
-    const uint64_t* inside = pvtBitGrid_GetRow(&shell->solid->inside, y, z);
-    size_t place = pvtCellGrid_Rank(shell->touched, x > 0 ? x - 1 : 0, y, z);
-    for (int i = 0; i < 3; ++i) {
+    uint32_t place = FindInRow(row, x - 1);
+    outside[0] = GetWaves(shell, place).outside;
+    for (int i = 1; i < 3; ++i) {
         const int at = x + i - 1;
-        if (at < 0 || at >= size[0]) {
-            outside[i] = ~UINT64_C(0);
-        } else if (pvtGetBit(touched, (size_t)at)) {
-            outside[i] = shell->waves[place++].outside;
-        } else {
-            outside[i] = pvtGetBit(inside, (size_t)at) ? 0 : ~UINT64_C(0);
-        }
+        const bool isNext = place < INSIDE && at < row->size && pvtGetBit(row->touched, (size_t)at);
+        place = isNext ? place + 1 : FindInRow(row, at);
+        outside[i] = GetWaves(shell, place).outside;
     }
 }
 
 // The voxel's cells that are outside or have an outside cell among their 26 neighbours. A plane
 // touches no cell whose neighbours all lie on its inner side or on it.
-static uint64_t FindCellsNearOutside(const Shell* shell, const uint16_t place[3])
+static uint64_t FindCellsNearOutside(const Shell* shell, const Row rows[9], int x)
 {
     uint64_t layers[3];
     for (int z = 0; z < 3; ++z) {
-        uint64_t rows[3];
+        uint64_t dilated[3];
         for (int y = 0; y < 3; ++y) {
             uint64_t cells[3];
-            GetOutsideOfThree(shell, place[0], place[1] + y - 1, place[2] + z - 1, cells);
-            rows[y] = Dilate(cells, 0);
+            GetOutsideOfThree(shell, &rows[3 * z + y], x, cells);
+            dilated[y] = Dilate(cells, 0);
         }
-        layers[z] = Dilate(rows, 1);
+        layers[z] = Dilate(dilated, 1);
     }
     return Dilate(layers, 2);
 }
@@ -288,11 +330,19 @@ static void JudgeVoxels(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Shell* shell = taskData;
+    Row rows[9] = {0};
     for (size_t i = begin; i < end; ++i) {
         if (i % CANCEL_INTERVAL == 0 && pvtIsCancelled(shell->context)) {
             return;
         }
-        shell->allowed[i] = ~FindCellsNearOutside(shell, shell->places[i]);
+        const uint16_t* place = shell->places[i];
+        const uint16_t* last = shell->places[i > begin ? i - 1 : i];
+        if (i == begin || place[1] != last[1] || place[2] != last[2]) {
+            for (int n = 0; n < 9; ++n) {
+                rows[n] = GetRow(shell, place[1] + n % 3 - 1, place[2] + n / 3 - 1);
+            }
+        }
+        shell->allowed[i] = ~FindCellsNearOutside(shell, rows, place[0]);
     }
 }
 
@@ -323,8 +373,8 @@ static void FindOpenings(size_t begin, size_t end, int worker, void* taskData)
         }
         const uint16_t* place = shell->places[i];
         for (int n = 0; n < 27; ++n) {
-            const uint32_t beside = FindNeighbour(shell, place[0] + n % 3 - 1,
-                                                  place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
+            const Row row = GetRow(shell, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
+            const uint32_t beside = FindInRow(&row, place[0] + n % 3 - 1);
             if (beside < INSIDE) {
                 Mark(&shell->isOpen[beside]);
             }

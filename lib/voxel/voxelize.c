@@ -41,8 +41,9 @@ typedef struct Voxelizer {
     pvtBitGrid* grid;
     pvtCellGrid* cells; // instead of the grid: coordinates count in cells then
     double scale;       // [vx/wu]
-    RowSpan* spans;     // for each worker, one for each y
-    size_t spanStep;    // entries for a worker
+    RowSpan* spans;     // for each worker and layer, one for each y
+    size_t layerStep;   // entries for a layer
+    int layerCount;     // slabs that are marked together: those of a voxel
     atomic_bool cancelled;
 } Voxelizer;
 
@@ -82,13 +83,19 @@ static void MarkBits(uint64_t* word, uint64_t mask)
     }
 }
 
-// The cells of a row that lie in voxel x, as bits of its word.
-static uint64_t GetCellBits(int x, int y, int z, int firstX, int lastX)
+// The cells of a span that lie in voxel x, as bits of their row; none when it lies elsewhere.
+static uint64_t GetCellBits(int x, RowSpan span)
 {
-    const int first = firstX > PVT_CELLS * x ? firstX - PVT_CELLS * x : 0;
-    const int last = lastX < PVT_CELLS * x + PVT_CELLS - 1 ? lastX - PVT_CELLS * x : PVT_CELLS - 1;
-    const int row = PVT_CELLS * (y % PVT_CELLS + PVT_CELLS * (z % PVT_CELLS));
-    return pvtMakeMask((unsigned)first, (unsigned)last + 1) << row;
+    const int first = span.first > PVT_CELLS * x ? span.first - PVT_CELLS * x : 0;
+    const int last =
+        span.last < PVT_CELLS * x + PVT_CELLS - 1 ? span.last - PVT_CELLS * x : PVT_CELLS - 1;
+    return first > last ? 0 : pvtMakeMask((unsigned)first, (unsigned)last + 1);
+}
+
+// The place of a row's first cell in its voxel's word.
+static int GetCellRow(int y, int z)
+{
+    return PVT_CELLS * (y % PVT_CELLS + PVT_CELLS * (z % PVT_CELLS));
 }
 
 static void MarkCells(const pvtCellGrid* cells, int y, int z, int firstX, int lastX)
@@ -97,7 +104,8 @@ static void MarkCells(const pvtCellGrid* cells, int y, int z, int firstX, int la
     size_t place = pvtCellGrid_Rank(cells, firstX / PVT_CELLS, y / PVT_CELLS, z / PVT_CELLS);
     for (int x = firstX / PVT_CELLS; x <= lastX / PVT_CELLS; ++x) {
         if (pvtGetBit(voxels, (size_t)x)) {
-            MarkBits(&cells->cells[place++], GetCellBits(x, y, z, firstX, lastX));
+            const RowSpan span = {firstX, lastX};
+            MarkBits(&cells->cells[place++], GetCellBits(x, span) << GetCellRow(y, z));
         }
     }
 }
@@ -129,7 +137,7 @@ static bool AreCellsMarked(const pvtCellGrid* cells, int y, int z, RowSpan span)
 {
     for (int x = span.first / PVT_CELLS; x <= span.last / PVT_CELLS; ++x) {
         const size_t index = pvtCellGrid_Find(cells, x, y / PVT_CELLS, z / PVT_CELLS);
-        const uint64_t bits = GetCellBits(x, y, z, span.first, span.last);
+        const uint64_t bits = GetCellBits(x, span) << GetCellRow(y, z);
         if (index != PVT_NO_CELLS &&
             (~__atomic_load_n(&cells->cells[index], __ATOMIC_RELAXED) & bits) != 0) {
             return false;
@@ -237,7 +245,7 @@ static void AddPart(Slab* slab, const Triangle* t, double low, double high)
     }
 }
 
-static void MarkSlab(const Voxelizer* voxelizer, const Triangle* t, Slab* slab)
+static void CutSlab(const Triangle* t, Slab* slab)
 {
     const double bottom = t->corner[0].z;
     const double top = t->corner[2].z;
@@ -248,6 +256,10 @@ static void MarkSlab(const Voxelizer* voxelizer, const Triangle* t, Slab* slab)
     } else {
         AddPart(slab, t, low, high);
     }
+}
+
+static void MarkSlab(const Voxelizer* voxelizer, const Slab* slab)
+{
     for (int y = slab->firstRow; y <= slab->lastRow; ++y) {
         // Read one by one, as they were written just before: as a pair they would not be forwarded
         // from the processor's store buffer.
@@ -259,7 +271,92 @@ static void MarkSlab(const Voxelizer* voxelizer, const Triangle* t, Slab* slab)
     }
 }
 
-static void MarkTriangle(Voxelizer* voxelizer, Triangle* t, RowSpan* spans)
+// Rows of cells within a row of voxels, and the cells from the first to the last of all of them.
+typedef struct CellRows {
+    RowSpan span[PVT_CELLS * PVT_CELLS];
+    int place[PVT_CELLS * PVT_CELLS]; // of the row's bits in a word
+    int count;
+    RowSpan all;
+} CellRows;
+
+static void CollectRows(const Slab* slabs, int slabCount, int voxelY, CellRows* rows)
+{
+    rows->count = 0;
+    rows->all = (RowSpan){INT_MAX, -1};
+    for (int k = 0; k < slabCount; ++k) {
+        const Slab* slab = &slabs[k];
+        const int begin = voxelY * PVT_CELLS, end = begin + PVT_CELLS - 1;
+        const int first = begin > slab->firstRow ? begin : slab->firstRow;
+        const int last = end < slab->lastRow ? end : slab->lastRow;
+        for (int y = first; y <= last; ++y) {
+            const RowSpan span = slab->spans[y];
+            if (span.first <= span.last) {
+                rows->span[rows->count] = span;
+                rows->place[rows->count++] = GetCellRow(y, slab->z);
+                rows->all.first = span.first < rows->all.first ? span.first : rows->all.first;
+                rows->all.last = span.last > rows->all.last ? span.last : rows->all.last;
+            }
+        }
+    }
+}
+
+// A word is written once for all rows that pass it.
+static void MarkCellRows(const pvtCellGrid* cells, int voxelY, int voxelZ, const CellRows* rows)
+{
+    const uint64_t* voxels = pvtBitGrid_GetRow(&cells->voxels, voxelY, voxelZ);
+    const int first = rows->all.first / PVT_CELLS;
+    size_t place = pvtCellGrid_Rank(cells, first, voxelY, voxelZ);
+    for (int x = first; x <= rows->all.last / PVT_CELLS; ++x) {
+        if (!pvtGetBit(voxels, (size_t)x)) {
+            continue;
+        }
+        uint64_t bits = 0;
+        for (int i = 0; i < rows->count; ++i) {
+            bits |= GetCellBits(x, rows->span[i]) << rows->place[i];
+        }
+        MarkBits(&cells->cells[place++], bits);
+    }
+}
+
+// Slabs within one layer of voxels.
+static void MarkCellSlabs(const Voxelizer* voxelizer, const Slab* slabs, int slabCount)
+{
+    int first = slabs[0].firstRow;
+    int last = slabs[0].lastRow;
+    for (int k = 1; k < slabCount; ++k) {
+        first = slabs[k].firstRow < first ? slabs[k].firstRow : first;
+        last = slabs[k].lastRow > last ? slabs[k].lastRow : last;
+    }
+    for (int y = first / PVT_CELLS; y <= last / PVT_CELLS; ++y) {
+        CellRows rows;
+        CollectRows(slabs, slabCount, y, &rows);
+        if (rows.count > 0) {
+            MarkCellRows(voxelizer->cells, y, slabs[0].z / PVT_CELLS, &rows);
+        }
+    }
+}
+
+// Slabs from z.first to z.last, as many at a time as make a layer of voxels.
+static void MarkSlabs(const Voxelizer* voxelizer, const Triangle* t, RowSpan z, RowSpan* spans)
+{
+    Slab slabs[PVT_CELLS];
+    int count = 0;
+    for (int k = z.first; k <= z.last; ++k) {
+        slabs[count] = (Slab){.spans = spans + (size_t)count * voxelizer->layerStep, .z = k};
+        CutSlab(t, &slabs[count++]);
+        if (k < z.last && (k + 1) % voxelizer->layerCount != 0) {
+            continue;
+        }
+        if (voxelizer->cells != NULL) {
+            MarkCellSlabs(voxelizer, slabs, count);
+        } else {
+            MarkSlab(voxelizer, slabs);
+        }
+        count = 0;
+    }
+}
+
+static void MarkTriangle(const Voxelizer* voxelizer, Triangle* t, RowSpan* spans)
 {
     const pvtVec3* c = t->corner;
     const RowSpan x = {(int)(Min(c[0].x, Min(c[1].x, c[2].x)) - margin),
@@ -285,10 +382,7 @@ static void MarkTriangle(Voxelizer* voxelizer, Triangle* t, RowSpan* spans)
         return;
     }
     pvtSortByZ(t->corner);
-    Slab slab = {.spans = spans};
-    for (slab.z = z.first; slab.z <= z.last; ++slab.z) {
-        MarkSlab(voxelizer, t, &slab);
-    }
+    MarkSlabs(voxelizer, t, z, spans);
 }
 
 static bool ShouldStop(Voxelizer* voxelizer, size_t begin, int worker)
@@ -308,7 +402,8 @@ static void MarkTriangles(size_t begin, size_t end, int worker, void* taskData)
     Voxelizer* voxelizer = taskData;
     const pvtMesh* mesh = voxelizer->mesh;
     const pvtVec3 origin = voxelizer->frame->origin;
-    RowSpan* spans = voxelizer->spans + (size_t)worker * voxelizer->spanStep;
+    RowSpan* spans =
+        voxelizer->spans + (size_t)worker * (size_t)voxelizer->layerCount * voxelizer->layerStep;
     for (size_t i = begin; i < end; ++i) {
         if ((i - begin) % CANCEL_INTERVAL == 0 && ShouldStop(voxelizer, i, worker)) {
             return;
@@ -328,11 +423,12 @@ static pvtStatus MarkMesh(Voxelizer* voxelizer)
     pvtContext* context = voxelizer->context;
     const int parts = voxelizer->cells != NULL ? PVT_CELLS : 1;
     voxelizer->scale = parts / voxelizer->frame->voxelSize;
-    voxelizer->spanStep =
+    voxelizer->layerCount = parts;
+    voxelizer->layerStep =
         ((size_t)(voxelizer->frame->size[1] * parts) / ALIGN_INTS + 1) * ALIGN_INTS;
+    const size_t layers = (size_t)pvtContext_GetThreadCount(context) * (size_t)parts;
     voxelizer->spans =
-        pvtAllocate(context, (size_t)pvtContext_GetThreadCount(context) * voxelizer->spanStep,
-                    sizeof *voxelizer->spans);
+        pvtAllocate(context, layers * voxelizer->layerStep, sizeof *voxelizer->spans);
     if (voxelizer->spans == NULL) {
         return pvtContext_GetStatus(context);
     }
