@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-enum { SIDES = 6, CANCEL_INTERVAL = 1024, BLOCK = 256 };
+enum { SIDES = 6, CANCEL_INTERVAL = 1024, BLOCK = 256, MIN_LAYERS = 4 };
 
 // What lies beyond a side of a touched voxel when it is not touched.
 #define OUTSIDE UINT32_MAX
@@ -31,7 +31,6 @@ typedef struct Shell {
     pvtContext* context;
     const pvtSolid* solid;
     const pvtCellGrid* touched;
-    uint16_t (*places)[3];         // of the voxels
     uint32_t (*neighbours)[SIDES]; // below and above along x, y, z
     Waves* waves;                  // cells that the waves have taken
     Waves* next;                   // and those that they take in this step
@@ -39,7 +38,7 @@ typedef struct Shell {
     uint8_t* wokenBlocks;          // whether any of BLOCK voxels is woken
     uint32_t* list;                // those that may in this step
     size_t listCount;
-    uint64_t* allowed; // the outcome
+    uint64_t* allowed; // the outcome, where `next` was
     uint8_t* isOpen;   // whether a voxel is beside one in which the waves meet
     uint8_t* isMixed;  // whether it has cells of its own
 } Shell;
@@ -112,9 +111,6 @@ static void ListRow(Shell* shell, int y, int z)
             for (int side = 2; side < SIDES; ++side) {
                 neighbours[side] = FindInRow(&beside[side - 2], x);
             }
-            shell->places[index][0] = (uint16_t)x;
-            shell->places[index][1] = (uint16_t)y;
-            shell->places[index][2] = (uint16_t)z;
             if (IsBesideWaves(neighbours)) {
                 Wake(shell, index);
             }
@@ -326,23 +322,36 @@ static uint64_t FindCellsNearOutside(const Shell* shell, const Row rows[9], int 
     return Dilate(layers, 2);
 }
 
-static void JudgeVoxels(size_t begin, size_t end, int worker, void* taskData)
+// The rows around one, itself in the middle: (y, z) with y first.
+static void GetRowsAround(const Shell* shell, int y, int z, Row rows[9])
+{
+    for (int n = 0; n < 9; ++n) {
+        rows[n] = GetRow(shell, y + n % 3 - 1, z + n / 3 - 1);
+    }
+}
+
+static void JudgeRow(const Shell* shell, int y, int z)
+{
+    Row rows[9];
+    GetRowsAround(shell, y, z, rows);
+    const Row* here = &rows[4];
+    for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
+        size_t index = here->ranks[w];
+        for (uint64_t bits = here->touched[w]; bits != 0; bits &= bits - 1, ++index) {
+            const int x = (int)(w * 64) + __builtin_ctzll(bits);
+            shell->allowed[index] = ~FindCellsNearOutside(shell, rows, x);
+        }
+    }
+}
+
+static void JudgeLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Shell* shell = taskData;
-    Row rows[9] = {0};
-    for (size_t i = begin; i < end; ++i) {
-        if (i % CANCEL_INTERVAL == 0 && pvtIsCancelled(shell->context)) {
-            return;
+    for (size_t z = begin; z < end && !pvtIsCancelled(shell->context); ++z) {
+        for (int y = 0; y < shell->touched->voxels.frame.size[1]; ++y) {
+            JudgeRow(shell, y, (int)z);
         }
-        const uint16_t* place = shell->places[i];
-        const uint16_t* last = shell->places[i > begin ? i - 1 : i];
-        if (i == begin || place[1] != last[1] || place[2] != last[2]) {
-            for (int n = 0; n < 9; ++n) {
-                rows[n] = GetRow(shell, place[1] + n % 3 - 1, place[2] + n / 3 - 1);
-            }
-        }
-        shell->allowed[i] = ~FindCellsNearOutside(shell, rows, place[0]);
     }
 }
 
@@ -363,21 +372,35 @@ static bool DoWavesMeet(const Shell* shell, size_t voxel)
     return ((outside & near) | (within & far)) != 0;
 }
 
+static void FindOpeningsInRow(const Shell* shell, int y, int z)
+{
+    Row rows[9];
+    GetRowsAround(shell, y, z, rows);
+    const Row* here = &rows[4];
+    for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
+        size_t index = here->ranks[w];
+        for (uint64_t bits = here->touched[w]; bits != 0; bits &= bits - 1, ++index) {
+            if (!DoWavesMeet(shell, index)) {
+                continue;
+            }
+            const int x = (int)(w * 64) + __builtin_ctzll(bits);
+            for (int n = 0; n < 27; ++n) {
+                const uint32_t beside = FindInRow(&rows[n / 3], x + n % 3 - 1);
+                if (beside < INSIDE) {
+                    Mark(&shell->isOpen[beside]);
+                }
+            }
+        }
+    }
+}
+
 static void FindOpenings(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const Shell* shell = taskData;
-    for (size_t i = begin; i < end; ++i) {
-        if (!DoWavesMeet(shell, i)) {
-            continue;
-        }
-        const uint16_t* place = shell->places[i];
-        for (int n = 0; n < 27; ++n) {
-            const Row row = GetRow(shell, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
-            const uint32_t beside = FindInRow(&row, place[0] + n % 3 - 1);
-            if (beside < INSIDE) {
-                Mark(&shell->isOpen[beside]);
-            }
+    for (size_t z = begin; z < end; ++z) {
+        for (int y = 0; y < shell->touched->voxels.frame.size[1]; ++y) {
+            FindOpeningsInRow(shell, y, (int)z);
         }
     }
 }
@@ -420,47 +443,57 @@ static void FindMixed(size_t begin, size_t end, int worker, void* taskData)
 static pvtStatus FindAllowedCells(pvtContext* context, Shell* shell)
 {
     const size_t count = shell->touched->count;
-    shell->places = pvtAllocateUnset(context, count, sizeof *shell->places);
     shell->neighbours = pvtAllocateUnset(context, count, sizeof *shell->neighbours);
     shell->waves = pvtAllocate(context, count, sizeof *shell->waves);
     shell->next = pvtAllocateUnset(context, count, sizeof *shell->next);
     shell->list = pvtAllocateUnset(context, count, sizeof *shell->list);
     shell->woken = pvtAllocate(context, count, sizeof *shell->woken);
     shell->wokenBlocks = pvtAllocate(context, count / BLOCK + 1, sizeof *shell->wokenBlocks);
-    shell->allowed = pvtAllocateUnset(context, count, sizeof *shell->allowed);
     shell->isOpen = pvtAllocate(context, count, sizeof *shell->isOpen);
     shell->isMixed = pvtAllocateUnset(context, count, sizeof *shell->isMixed);
-    if (shell->places == NULL || shell->neighbours == NULL || shell->waves == NULL ||
-        shell->next == NULL || shell->list == NULL || shell->woken == NULL ||
-        shell->wokenBlocks == NULL || shell->allowed == NULL || shell->isOpen == NULL ||
-        shell->isMixed == NULL) {
+    if (shell->neighbours == NULL || shell->waves == NULL || shell->next == NULL ||
+        shell->list == NULL || shell->woken == NULL || shell->wokenBlocks == NULL ||
+        shell->isOpen == NULL || shell->isMixed == NULL) {
         return pvtContext_GetStatus(context);
     }
-    pvtParallelFor(context, ListLayers, (size_t)shell->touched->voxels.frame.size[2], 4, shell);
+    const size_t layers = (size_t)shell->touched->voxels.frame.size[2];
+    pvtParallelFor(context, ListLayers, layers, MIN_LAYERS, shell);
     const pvtStatus status = RunWaves(context, shell);
     if (status == PVT_OK) {
-        pvtParallelFor(context, JudgeVoxels, count, CANCEL_INTERVAL, shell);
-        pvtParallelFor(context, FindOpenings, count, CANCEL_INTERVAL, shell);
+        shell->allowed = (uint64_t*)shell->next;
+        pvtParallelFor(context, JudgeLayers, layers, MIN_LAYERS, shell);
+        pvtParallelFor(context, FindOpenings, layers, MIN_LAYERS, shell);
         pvtParallelFor(context, FindMixed, count, CANCEL_INTERVAL, shell);
     }
     return status == PVT_OK && pvtIsCancelled(context) ? pvtFailCancelled(context) : status;
+}
+
+// Whole voxels become allowed; those with some cells are mixed.
+static void SortBits(const Shell* shell, pvtBitGrid* allowed, pvtBitGrid* mixed)
+{
+    const pvtBitGrid* touched = &shell->touched->voxels;
+    size_t index = 0;
+    for (size_t w = 0; w < touched->wordCount; ++w) {
+        for (uint64_t bits = touched->words[w]; bits != 0; bits &= bits - 1, ++index) {
+            const uint64_t bit = bits & (~bits + 1);
+            if (shell->isMixed[index] != 0) {
+                mixed->words[w] |= bit;
+            } else if (shell->allowed[index] != 0) {
+                allowed->words[w] |= bit;
+            }
+        }
+    }
 }
 
 // Whole voxels become allowed; those with some cells are kept with them.
 static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid* allowed,
                             pvtCellGrid* cells)
 {
-    const size_t count = shell->touched->count;
     pvtBitGrid mixed;
     if (pvtCreateBitGrid(context, &allowed->frame, &mixed) != PVT_OK) {
         return pvtContext_GetStatus(context);
     }
-    for (size_t i = 0; i < count; ++i) {
-        if (shell->isMixed[i] != 0) {
-            const uint16_t* place = shell->places[i];
-            pvtSetBit(pvtBitGrid_GetRow(&mixed, place[1], place[2]), place[0]);
-        }
-    }
+    SortBits(shell, allowed, &mixed);
     pvtStatus status = pvtCreateCellGrid(context, &mixed, cells);
     if (status == PVT_OK) {
         cells->border = pvtAllocate(context, cells->count, sizeof *cells->border);
@@ -472,13 +505,10 @@ static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid*
     }
     // The shell's voxels are in the same order as those that are kept.
     size_t next = 0;
-    for (size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < shell->touched->count; ++i) {
         if (shell->isMixed[i] != 0) {
             cells->cells[next] = shell->allowed[i];
             cells->border[next++] = GetBorder(shell, i);
-        } else if (shell->allowed[i] != 0) {
-            const uint16_t* place = shell->places[i];
-            pvtSetBit(pvtBitGrid_GetRow(allowed, place[1], place[2]), place[0]);
         }
     }
     return PVT_OK;
@@ -486,14 +516,12 @@ static pvtStatus SortVoxels(pvtContext* context, const Shell* shell, pvtBitGrid*
 
 static void FreeShell(pvtContext* context, Shell* shell)
 {
-    pvtRelease(context, shell->places);
     pvtRelease(context, shell->neighbours);
     pvtRelease(context, shell->waves);
     pvtRelease(context, shell->next);
     pvtRelease(context, shell->list);
     pvtRelease(context, shell->woken);
     pvtRelease(context, shell->wokenBlocks);
-    pvtRelease(context, shell->allowed);
     pvtRelease(context, shell->isOpen);
     pvtRelease(context, shell->isMixed);
 }
