@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets the machine up, builds a release, and makes the occluder of a model.
+# Sets the machine up, builds a release, makes the occluder of a model, and judges it.
 #   scripts/demo.sh [MODEL]    default: models/building_kaykit_a.glb
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -27,12 +27,15 @@ paravent=build/release/apps/paravent/paravent
 occluder="$results/${name}_occluder.glb"
 stats="$results/${name}_stats.json"
 picture="$results/${name}.png"
+silhouettes="$results/${name}_silhouettes.png"
 set -x
 "$paravent" generate "$model" -o "$occluder" --budget 64 \
     --stats "$stats" --preview "$picture"
+"$paravent" evaluate "$model" "$occluder" --silhouettes "$silhouettes"
 { set +x; } 2>/dev/null
 
 echo
 echo "the occluder:  $PWD/$occluder"
 echo "its numbers:   $PWD/$stats"
 echo "the picture:   $PWD/$picture"
+echo "silhouettes:   $PWD/$silhouettes"
