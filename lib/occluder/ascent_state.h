@@ -28,6 +28,7 @@ typedef struct pvtAscent {
     size_t next;    ///< sight that comes next
     float softness; ///< [px]
     float reach;    ///< [vx] of a step
+    bool isShell;   ///< most triangles had walls on both sides when they settled once
 } pvtAscent;
 
 /// Adds the mesh's positions [wu] to the corners of `set`, each anchored where it is.

@@ -36,12 +36,13 @@ static const float JUDGE_SOFTNESS = 0.6F; // [px]
 static const float LATE_SOFTNESS = 12.0F; // [px] below which contacts are looked for more closely
 static const float COARSE_PIECE = 16.0F, FINE_PIECE = 8.0F; // [vx]
 static const float MOMENTUM = 0.9F, SQUARES = 0.98F;
-static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F; // [vx]
+static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F, SHELL_LEAST = 0.3F; // [vx]
 static const float THIN_PART = 0.1F;
 static const float AHEAD = 2.0F;       // of a step
 static const float LEAST_PULL = 0.02F; // of the strongest: corners that are pulled less move less
 
-// Where the inside is thin, steps are short: a fraction of how deep it is a little farther in.
+// Where the inside is thin, steps are short: a fraction of how deep it is a little farther in. In a
+// shell there is nothing else, and triangles have a long way to go along it.
 static float LimitReach(const pvtAscent* ascent, const float corner[3])
 {
     float inward[3], deeper[3];
@@ -50,7 +51,8 @@ static float LimitReach(const pvtAscent* ascent, const float corner[3])
         deeper[axis] = corner[axis] + THIN_LOOK * inward[axis];
     }
     const float depth = pvtField_GetDepth(&ascent->field, deeper);
-    const float most = THIN_LEAST + THIN_PART * (depth > 0.0F ? depth : 0.0F);
+    const float least = ascent->isShell ? SHELL_LEAST : THIN_LEAST;
+    const float most = least + THIN_PART * (depth > 0.0F ? depth : 0.0F);
     return ascent->reach < most ? ascent->reach : most;
 }
 

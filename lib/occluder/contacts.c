@@ -275,20 +275,20 @@ static void MoveCorners(const pvtTriangleSet* set, const pvtContact* contact,
     }
 }
 
-static void GetContactPoint(const pvtTriangleSet* set, const pvtContact* contact, float point[3])
+void pvtGetContactPlace(const pvtContact* contact, const pvtTriangleSet* set, float place[3])
 {
     float corners[3][3];
     for (int k = 0; k < 3; ++k) {
         memcpy(corners[k], set->corners[set->triangles[contact->triangle][k]], sizeof corners[k]);
     }
-    GetPoint((const float(*)[3])corners, contact->shares, point);
+    GetPoint((const float(*)[3])corners, contact->shares, place);
 }
 
 void pvtUpdateContacts(const pvtField* field, const pvtTriangleSet* set, pvtContactSet* contacts)
 {
     for (int i = 0; i < contacts->count; ++i) {
         float point[3];
-        GetContactPoint(set, &contacts->contacts[i], point);
+        pvtGetContactPlace(&contacts->contacts[i], set, point);
         contacts->contacts[i].depth =
             pvtField_GetDepthAndInward(field, point, contacts->contacts[i].inward);
     }
@@ -352,7 +352,7 @@ void pvtPushInside(pvtContactSet* contacts, const pvtField* field, int sweeps, p
                 continue;
             }
             float point[3], inward[3];
-            GetContactPoint(set, contact, point);
+            pvtGetContactPlace(contact, set, point);
             const float depth = pvtField_GetDepthAndInward(field, point, inward);
             contact->looked = pushes;
             if (depth < 0.0F) {

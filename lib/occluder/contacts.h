@@ -55,6 +55,8 @@ void pvtSlideAlong(const pvtContactSet* contacts, float band, const pvtTriangleS
 /// could lead are not looked at.
 void pvtPushInside(pvtContactSet* contacts, const pvtField* field, int sweeps, pvtTriangleSet* set);
 
+/// [vx] where a contact's point is.
+void pvtGetContactPlace(const pvtContact* contact, const pvtTriangleSet* set, float place[3]);
 /// Moves the corners of a contact's triangle so that its point goes inwards by `amount` [vx].
 void pvtMoveContact(const pvtContact* contact, pvtTriangleSet* set, float amount);
 

@@ -1,24 +1,45 @@
 // SPDX-License-Identifier: MIT
 // From nearly inside to inside. The field knows the border to a fraction of a voxel; what the exact
-// test objects to keeps a greater distance from it, round after round. Where the inside is too thin
-// for that, triangles go back to where they were inside the last time, and from there as far
-// towards where the ascent had left them as they can (polish.c).
+// test objects to keeps a greater distance from it, round after round. Between two walls a triangle
+// may go to and fro like that. Then what was asked of it is kept, and met all at once; and as more
+// was asked than had to be, corners go back from there towards where the ascent had left them, as
+// far as they can (polish.c). Where that finds no place, either, triangles go back to where they
+// were inside the last time, and on from there in the same way.
 #include "ascent_state.h"
 
 #include "base/context.h"
 #include "base/vector.h"
 
+#include <math.h>
 #include <string.h>
 
-enum { MOST_ROUNDS = 64, RETREATS = 8 };
+enum {
+    MOST_ROUNDS = 64,
+    DEMANDING_ROUNDS = 24,
+    FREE_ROUNDS = 16,  // after which many triangles outside are a sign of walls on both sides
+    MANY = 8,          // one in so many
+    MOST_DEMANDS = 24, // of a triangle: the last ones
+    SWEEPS = 20,
+    RETREATS = 8
+};
 
 static const float PUSH_GROWTH = 0.01F; // [vx] a round
+static const float NEAR_ENOUGH = 1e-4F; // [vx]
+
+// Points of a triangle that were found outside, and how deep they have to be since then.
+typedef struct Demands {
+    pvtContact points[MOST_DEMANDS];
+    int count; // made so far; the last ones are kept
+} Demands;
 
 // What is looked at again: triangles of which a corner moved since they were found inside.
 typedef struct Settling {
     pvtAscent* ascent;
     bool* isSettled;
     pvtContact* contacts; // one a triangle
+    Demands* demands;     // one a triangle
+    uint32_t* moves;      // of each corner: the last move for a demand, counted from 1
+    uint32_t moveCount;
     bool* isOutside;
     float (*goals)[3]; // of each corner: where the ascent left it, if it retreated, or where it is
 } Settling;
@@ -135,6 +156,78 @@ static void PushOutside(Settling* settling, int round)
     }
 }
 
+// Where the test says that a triangle is not inside, it has to be deeper from now on.
+static void AddDemands(Settling* settling, int round)
+{
+    const float least = PUSH_GROWTH * (float)(round + 1);
+    for (int t = 0; t < settling->ascent->set.triangleCount; ++t) {
+        if (settling->isOutside[t]) {
+            Demands* demands = &settling->demands[t];
+            pvtContact* point = &demands->points[demands->count++ % MOST_DEMANDS];
+            *point = settling->contacts[t];
+            point->depth = fmaxf(least, point->depth + least);
+            point->looked = 0;
+        }
+    }
+}
+
+// The last move of a triangle's corners.
+static uint32_t GetLastMove(const Settling* settling, int triangle)
+{
+    const uint32_t* corners = settling->ascent->set.triangles[triangle];
+    uint32_t last = 0;
+    for (int k = 0; k < 3; ++k) {
+        last = settling->moves[corners[k]] > last ? settling->moves[corners[k]] : last;
+    }
+    return last;
+}
+
+// Moves the triangle inwards if a point of it is less deep than it has to be.
+static void MeetDemand(Settling* settling, pvtContact* point)
+{
+    pvtAscent* ascent = settling->ascent;
+    float place[3];
+    pvtGetContactPlace(point, &ascent->set, place);
+    const float depth = pvtField_GetDepthAndInward(&ascent->field, place, point->inward);
+    if (depth < point->depth - NEAR_ENOUGH) {
+        pvtMoveContact(point, &ascent->set, point->depth - depth);
+        ++settling->moveCount;
+        for (int k = 0; k < 3; ++k) {
+            settling->moves[ascent->set.triangles[point->triangle][k]] = settling->moveCount;
+        }
+    }
+    point->looked = settling->moveCount;
+}
+
+static void MeetDemandsOnce(Settling* settling)
+{
+    for (int t = 0; t < settling->ascent->set.triangleCount; ++t) {
+        Demands* demands = &settling->demands[t];
+        const int count = demands->count < MOST_DEMANDS ? demands->count : MOST_DEMANDS;
+        for (int i = 0; i < count; ++i) {
+            pvtContact* point = &demands->points[i];
+            if (point->looked == 0 || GetLastMove(settling, t) > point->looked) {
+                MeetDemand(settling, point);
+            }
+        }
+    }
+}
+
+static void MeetDemands(Settling* settling)
+{
+    const uint32_t before = settling->moveCount;
+    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+        const uint32_t last = settling->moveCount;
+        MeetDemandsOnce(settling);
+        if (settling->moveCount == last) {
+            break;
+        }
+    }
+    for (int t = 0; t < settling->ascent->set.triangleCount; ++t) {
+        settling->isSettled[t] = settling->isSettled[t] && GetLastMove(settling, t) <= before;
+    }
+}
+
 // What is still outside goes back towards where it was inside, in the end all the way.
 static void RetreatOutside(Settling* settling, int retreat)
 {
@@ -177,15 +270,43 @@ static void TakeOutside(Settling* settling)
     pvtTriangleSet_FindEdges(&settling->ascent->set);
 }
 
-static pvtStatus PushInside(pvtContext* context, Settling* settling, int* outside)
+// How many triangles are outside where the ascent left them.
+static int BeginAnew(pvtContext* context, Settling* settling)
 {
-    const pvtTriangleSet* set = &settling->ascent->set;
+    pvtTriangleSet* set = &settling->ascent->set;
+    memcpy(set->corners, settling->goals, (size_t)set->cornerCount * sizeof *set->corners);
     for (int t = 0; t < set->triangleCount; ++t) {
         settling->isSettled[t] = pvtTriangleSet_IsFixed(set, t);
     }
-    *outside = TestAll(context, settling);
-    for (int round = 0; round<MOST_ROUNDS&& * outside> 0; ++round) {
+    return TestAll(context, settling);
+}
+
+static bool AreMost(const Settling* settling, int outside)
+{
+    return 2 * outside > settling->ascent->set.triangleCount;
+}
+
+// Goes on with rounds from `begin` to `end` − 1, as long as anything is outside.
+static pvtStatus PushInside(pvtContext* context, Settling* settling, int begin, int end,
+                            int* outside)
+{
+    for (int round = begin; round<end&& * outside> 0; ++round) {
         PushOutside(settling, round);
+        *outside = TestAll(context, settling);
+        if (pvtIsCancelled(context)) {
+            return pvtFailCancelled(context);
+        }
+    }
+    return PVT_OK;
+}
+
+static pvtStatus DemandInside(pvtContext* context, Settling* settling, int* outside)
+{
+    *outside = BeginAnew(context, settling);
+    settling->moveCount = 1; // 0 stands for a point that has not been looked at
+    for (int round = 0; round<DEMANDING_ROUNDS&& * outside> 0; ++round) {
+        AddDemands(settling, round);
+        MeetDemands(settling);
         *outside = TestAll(context, settling);
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
@@ -212,27 +333,55 @@ static pvtStatus Retreat(pvtContext* context, Settling* settling, int outside)
     return PVT_OK;
 }
 
-static pvtStatus BringInside(pvtContext* context, Settling* settling)
+static pvtStatus GoBack(pvtContext* context, Settling* settling, int outside)
 {
     const pvtTriangleSet* set = &settling->ascent->set;
-    const size_t bytes = (size_t)set->cornerCount * sizeof *set->corners;
-    memcpy(settling->goals, set->corners, bytes);
-    int outside = 0;
-    pvtStatus status = PushInside(context, settling, &outside);
-    if (status != PVT_OK || outside == 0) {
-        return status;
-    }
     float(*pushed)[3] = pvtAllocate(context, (size_t)set->cornerCount, sizeof *pushed);
     if (pushed == NULL) {
         return pvtContext_GetStatus(context);
     }
-    memcpy(pushed, set->corners, bytes);
-    status = Retreat(context, settling, outside);
+    memcpy(pushed, set->corners, (size_t)set->cornerCount * sizeof *set->corners);
+    const pvtStatus status = Retreat(context, settling, outside);
     ChooseGoals(settling, (const float(*)[3])pushed);
     pvtRelease(context, pushed);
-    return status == PVT_OK
-               ? pvtAscent_Return(context, settling->ascent, (const float(*)[3])settling->goals)
-               : status;
+    return status;
+}
+
+// When nothing is outside in the end, corners have gone back as far as they can.
+static pvtStatus TryDemands(pvtContext* context, Settling* settling, int* outside)
+{
+    pvtStatus status = DemandInside(context, settling, outside);
+    if (status == PVT_OK && *outside == 0) {
+        return pvtAscent_Return(context, settling->ascent, (const float(*)[3])settling->goals);
+    }
+    if (status == PVT_OK) {
+        *outside = BeginAnew(context, settling);
+        status = PushInside(context, settling, 0, FREE_ROUNDS, outside);
+    }
+    return status;
+}
+
+static pvtStatus BringInside(pvtContext* context, Settling* settling)
+{
+    const pvtTriangleSet* set = &settling->ascent->set;
+    memcpy(settling->goals, set->corners, (size_t)set->cornerCount * sizeof *set->corners);
+    int outside = BeginAnew(context, settling);
+    pvtStatus status = PushInside(context, settling, 0, FREE_ROUNDS, &outside);
+    if (status == PVT_OK && AreMost(settling, outside)) {
+        settling->ascent->isShell = true;
+        status = TryDemands(context, settling, &outside);
+    }
+    if (status == PVT_OK) {
+        status = PushInside(context, settling, FREE_ROUNDS, MOST_ROUNDS, &outside);
+    }
+    if (status == PVT_OK && outside > 0) {
+        status = GoBack(context, settling, outside);
+        if (status == PVT_OK) {
+            status =
+                pvtAscent_Return(context, settling->ascent, (const float(*)[3])settling->goals);
+        }
+    }
+    return status;
 }
 
 pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent)
@@ -242,14 +391,19 @@ pvtStatus pvtAscent_Settle(pvtContext* context, pvtAscent* ascent)
     settling.isSettled = pvtAllocate(context, count, sizeof *settling.isSettled);
     settling.isOutside = pvtAllocate(context, count, sizeof *settling.isOutside);
     settling.contacts = pvtAllocate(context, count, sizeof *settling.contacts);
+    settling.demands = pvtAllocate(context, count, sizeof *settling.demands);
+    settling.moves = pvtAllocate(context, (size_t)ascent->set.cornerCount, sizeof *settling.moves);
     settling.goals = pvtAllocate(context, (size_t)ascent->set.cornerCount, sizeof *settling.goals);
     pvtStatus status = settling.isSettled == NULL || settling.isOutside == NULL ||
-                               settling.contacts == NULL || settling.goals == NULL
+                               settling.contacts == NULL || settling.demands == NULL ||
+                               settling.moves == NULL || settling.goals == NULL
                            ? pvtContext_GetStatus(context)
                            : BringInside(context, &settling);
     pvtRelease(context, settling.isSettled);
     pvtRelease(context, settling.isOutside);
     pvtRelease(context, settling.contacts);
+    pvtRelease(context, settling.demands);
+    pvtRelease(context, settling.moves);
     pvtRelease(context, settling.goals);
     if (status == PVT_OK) {
         memcpy(ascent->set.anchors, ascent->set.corners,

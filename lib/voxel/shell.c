@@ -62,16 +62,19 @@ typedef struct Row {
     int size;
 } Row;
 
-static Row GetRow(const Shell* shell, int y, int z)
+static Row GetRowInGrid(const Shell* shell, int y, int z)
 {
     const pvtBitGrid* voxels = &shell->touched->voxels;
-    const int* size = voxels->frame.size;
-    if (y < 0 || z < 0 || y >= size[1] || z >= size[2]) {
-        return (Row){0};
-    }
     const size_t first = pvtGetRowIndex(voxels, y, z) * voxels->wordsPerRow;
     return (Row){voxels->words + first, shell->solid->inside.words + first,
-                 shell->touched->ranks + first, size[0]};
+                 shell->touched->ranks + first, voxels->frame.size[0]};
+}
+
+static Row GetRow(const Shell* shell, int y, int z)
+{
+    const int* size = shell->touched->voxels.frame.size;
+    const bool isInGrid = y >= 0 && z >= 0 && y < size[1] && z < size[2];
+    return isInGrid ? GetRowInGrid(shell, y, z) : (Row){0};
 }
 
 static uint32_t FindInRow(const Row* row, int x)
@@ -98,7 +101,7 @@ static bool IsBesideWaves(const uint32_t neighbours[SIDES])
 
 static void ListRow(Shell* shell, int y, int z)
 {
-    const Row here = GetRow(shell, y, z);
+    const Row here = GetRowInGrid(shell, y, z);
     const Row beside[4] = {GetRow(shell, y - 1, z), GetRow(shell, y + 1, z),
                            GetRow(shell, y, z - 1), GetRow(shell, y, z + 1)};
     for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
@@ -334,10 +337,10 @@ static void JudgeRow(const Shell* shell, int y, int z)
 {
     Row rows[9];
     GetRowsAround(shell, y, z, rows);
-    const Row* here = &rows[4];
+    const Row here = GetRowInGrid(shell, y, z);
     for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
-        size_t index = here->ranks[w];
-        for (uint64_t bits = here->touched[w]; bits != 0; bits &= bits - 1, ++index) {
+        size_t index = here.ranks[w];
+        for (uint64_t bits = here.touched[w]; bits != 0; bits &= bits - 1, ++index) {
             const int x = (int)(w * 64) + __builtin_ctzll(bits);
             shell->allowed[index] = ~FindCellsNearOutside(shell, rows, x);
         }
@@ -376,10 +379,10 @@ static void FindOpeningsInRow(const Shell* shell, int y, int z)
 {
     Row rows[9];
     GetRowsAround(shell, y, z, rows);
-    const Row* here = &rows[4];
+    const Row here = GetRowInGrid(shell, y, z);
     for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
-        size_t index = here->ranks[w];
-        for (uint64_t bits = here->touched[w]; bits != 0; bits &= bits - 1, ++index) {
+        size_t index = here.ranks[w];
+        for (uint64_t bits = here.touched[w]; bits != 0; bits &= bits - 1, ++index) {
             if (!DoWavesMeet(shell, index)) {
                 continue;
             }

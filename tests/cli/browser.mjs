@@ -17,7 +17,7 @@ export class Browser {
             "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
             "--no-first-run", "--disable-background-networking", "--remote-debugging-pipe",
             "--window-size=1240,1000", ...options, `--user-data-dir=${this.profile}`, "about:blank"],
-        { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+        { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], detached: true });
         let rest = "";
         this.process.stdio[4].setEncoding("utf8");
         this.process.stdio[4].on("data", (data) => {
@@ -46,6 +46,11 @@ export class Browser {
         } else if (message.method === "Log.entryAdded" && message.params.entry.level === "error") {
             this.errors.push(message.params.entry.text);
         }
+    }
+
+    // With its children, which would go on writing to the profile.
+    kill() {
+        process.kill(-this.process.pid, "SIGKILL");
     }
 
     call(method, params = {}, sessionId = undefined) {
@@ -86,17 +91,17 @@ export function runInBrowser(browser, examine) {
     const expect = (what, holds) => { if (!holds) problems.push(what); };
     const timer = setTimeout(() => {
         console.error("the browser does not answer");
-        browser.process.kill("SIGKILL");
+        browser.kill();
         process.exit(1);
     }, 100000);
     const end = () => {
         clearTimeout(timer);
         browser.process.on("exit", () => {
-            rmSync(browser.profile, { recursive: true, force: true, maxRetries: 5 });
+            rmSync(browser.profile, { recursive: true, force: true, maxRetries: 20 });
             problems.forEach((problem) => console.error(`not so: ${problem}`));
             process.exit(problems.length > 0 ? 1 : 0);
         });
-        browser.process.kill("SIGKILL");
+        browser.kill();
     };
     examine(browser, expect).catch((error) => problems.push(error.stack)).then(end);
 }
