@@ -51,7 +51,8 @@ static void MakeBowl(pvtContext* context, double wall, pvtMesh* mesh)
     for (uint32_t i = 0; i < 2 * SIDE; ++i) {
         const double radius = i < SIDE ? 1.0 : 1.0 - wall;
         const double a = 6.283185307179586 * (i % AROUND) / AROUND;
-        const double b = 1.5707963267948966 * (i % SIDE / AROUND) / DOWN;
+        const uint32_t row = i % SIDE / AROUND;
+        const double b = 1.5707963267948966 * row / DOWN;
         positions[i] = pvtScale((pvtVec3){cos(b) * cos(a), -sin(b), cos(b) * sin(a)}, radius);
     }
     for (uint32_t i = 0; i < AROUND; ++i) {
