@@ -17,7 +17,6 @@ enum {
     MOST_ROUNDS = 64,
     DEMANDING_ROUNDS = 24,
     FREE_ROUNDS = 16,  // after which many triangles outside are a sign of walls on both sides
-    MANY = 8,          // one in so many
     MOST_DEMANDS = 24, // of a triangle: the last ones
     SWEEPS = 20,
     RETREATS = 8

@@ -99,36 +99,47 @@ static bool IsBesideWaves(const uint32_t neighbours[SIDES])
     return isBeside;
 }
 
-static void ListRow(Shell* shell, int y, int z)
+// A touched voxel, and the rows around it with its own in the middle: (y, z) with y first.
+typedef void VisitFcn(Shell* shell, const Row rows[9], int x, size_t index);
+
+static inline void VisitRow(Shell* shell, int y, int z, VisitFcn* visit)
 {
     const Row here = GetRowInGrid(shell, y, z);
-    const Row beside[4] = {GetRow(shell, y - 1, z), GetRow(shell, y + 1, z),
-                           GetRow(shell, y, z - 1), GetRow(shell, y, z + 1)};
+    Row rows[9];
+    for (int n = 0; n < 9; ++n) {
+        rows[n] = GetRow(shell, y + n % 3 - 1, z + n / 3 - 1);
+    }
     for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
         size_t index = here.ranks[w];
         for (uint64_t bits = here.touched[w]; bits != 0; bits &= bits - 1, ++index) {
-            const int x = (int)(w * 64) + __builtin_ctzll(bits);
-            uint32_t* neighbours = shell->neighbours[index];
-            neighbours[0] = FindInRow(&here, x - 1);
-            neighbours[1] = FindInRow(&here, x + 1);
-            for (int side = 2; side < SIDES; ++side) {
-                neighbours[side] = FindInRow(&beside[side - 2], x);
-            }
-            if (IsBesideWaves(neighbours)) {
-                Wake(shell, index);
-            }
+            visit(shell, rows, (int)(w * 64) + __builtin_ctzll(bits), index);
         }
+    }
+}
+
+static inline void VisitLayer(Shell* shell, size_t z, VisitFcn* visit)
+{
+    for (int y = 0; y < shell->touched->voxels.frame.size[1]; ++y) {
+        VisitRow(shell, y, (int)z, visit);
+    }
+}
+
+static void ListVoxel(Shell* shell, const Row rows[9], int x, size_t index)
+{
+    const uint32_t neighbours[SIDES] = {FindInRow(&rows[4], x - 1), FindInRow(&rows[4], x + 1),
+                                        FindInRow(&rows[3], x),     FindInRow(&rows[5], x),
+                                        FindInRow(&rows[1], x),     FindInRow(&rows[7], x)};
+    memcpy(shell->neighbours[index], neighbours, sizeof neighbours);
+    if (IsBesideWaves(neighbours)) {
+        Wake(shell, index);
     }
 }
 
 static void ListLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
-    Shell* shell = taskData;
     for (size_t z = begin; z < end; ++z) {
-        for (int y = 0; y < shell->touched->voxels.frame.size[1]; ++y) {
-            ListRow(shell, y, (int)z);
-        }
+        VisitLayer(taskData, z, ListVoxel);
     }
 }
 
@@ -325,36 +336,17 @@ static uint64_t FindCellsNearOutside(const Shell* shell, const Row rows[9], int 
     return Dilate(layers, 2);
 }
 
-// The rows around one, itself in the middle: (y, z) with y first.
-static void GetRowsAround(const Shell* shell, int y, int z, Row rows[9])
+static void JudgeVoxel(Shell* shell, const Row rows[9], int x, size_t index)
 {
-    for (int n = 0; n < 9; ++n) {
-        rows[n] = GetRow(shell, y + n % 3 - 1, z + n / 3 - 1);
-    }
-}
-
-static void JudgeRow(const Shell* shell, int y, int z)
-{
-    Row rows[9];
-    GetRowsAround(shell, y, z, rows);
-    const Row here = GetRowInGrid(shell, y, z);
-    for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
-        size_t index = here.ranks[w];
-        for (uint64_t bits = here.touched[w]; bits != 0; bits &= bits - 1, ++index) {
-            const int x = (int)(w * 64) + __builtin_ctzll(bits);
-            shell->allowed[index] = ~FindCellsNearOutside(shell, rows, x);
-        }
-    }
+    shell->allowed[index] = ~FindCellsNearOutside(shell, rows, x);
 }
 
 static void JudgeLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
-    const Shell* shell = taskData;
+    Shell* shell = taskData;
     for (size_t z = begin; z < end && !pvtIsCancelled(shell->context); ++z) {
-        for (int y = 0; y < shell->touched->voxels.frame.size[1]; ++y) {
-            JudgeRow(shell, y, (int)z);
-        }
+        VisitLayer(shell, z, JudgeVoxel);
     }
 }
 
@@ -375,24 +367,13 @@ static bool DoWavesMeet(const Shell* shell, size_t voxel)
     return ((outside & near) | (within & far)) != 0;
 }
 
-static void FindOpeningsInRow(const Shell* shell, int y, int z)
+static void FindOpening(Shell* shell, const Row rows[9], int x, size_t index)
 {
-    Row rows[9];
-    GetRowsAround(shell, y, z, rows);
-    const Row here = GetRowInGrid(shell, y, z);
-    for (size_t w = 0; w < shell->touched->voxels.wordsPerRow; ++w) {
-        size_t index = here.ranks[w];
-        for (uint64_t bits = here.touched[w]; bits != 0; bits &= bits - 1, ++index) {
-            if (!DoWavesMeet(shell, index)) {
-                continue;
-            }
-            const int x = (int)(w * 64) + __builtin_ctzll(bits);
-            for (int n = 0; n < 27; ++n) {
-                const uint32_t beside = FindInRow(&rows[n / 3], x + n % 3 - 1);
-                if (beside < INSIDE) {
-                    Mark(&shell->isOpen[beside]);
-                }
-            }
+    const bool isOpen = DoWavesMeet(shell, index);
+    for (int n = 0; n < 27 && isOpen; ++n) {
+        const uint32_t beside = FindInRow(&rows[n / 3], x + n % 3 - 1);
+        if (beside < INSIDE) {
+            Mark(&shell->isOpen[beside]);
         }
     }
 }
@@ -400,11 +381,8 @@ static void FindOpeningsInRow(const Shell* shell, int y, int z)
 static void FindOpenings(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
-    const Shell* shell = taskData;
     for (size_t z = begin; z < end; ++z) {
-        for (int y = 0; y < shell->touched->voxels.frame.size[1]; ++y) {
-            FindOpeningsInRow(shell, y, (int)z);
-        }
+        VisitLayer(taskData, z, FindOpening);
     }
 }
 

@@ -98,22 +98,45 @@ static int GetCellRow(int y, int z)
     return PVT_CELLS * (y % PVT_CELLS + PVT_CELLS * (z % PVT_CELLS));
 }
 
-static void MarkCells(const pvtCellGrid* cells, int y, int z, int firstX, int lastX)
+// Rows of cells within a row of voxels, and the cells from the first to the last of all of them.
+typedef struct CellRows {
+    RowSpan span[PVT_CELLS * PVT_CELLS];
+    int place[PVT_CELLS * PVT_CELLS]; // of the row's bits in a word
+    int count;
+    RowSpan all;
+} CellRows;
+
+// A word is written once for all rows that pass it.
+static void MarkCellRows(const pvtCellGrid* cells, int voxelY, int voxelZ, const CellRows* rows)
 {
-    const uint64_t* voxels = pvtBitGrid_GetRow(&cells->voxels, y / PVT_CELLS, z / PVT_CELLS);
-    size_t place = pvtCellGrid_Rank(cells, firstX / PVT_CELLS, y / PVT_CELLS, z / PVT_CELLS);
-    for (int x = firstX / PVT_CELLS; x <= lastX / PVT_CELLS; ++x) {
-        if (pvtGetBit(voxels, (size_t)x)) {
-            const RowSpan span = {firstX, lastX};
-            MarkBits(&cells->cells[place++], GetCellBits(x, span) << GetCellRow(y, z));
+    const uint64_t* voxels = pvtBitGrid_GetRow(&cells->voxels, voxelY, voxelZ);
+    const int first = rows->all.first / PVT_CELLS;
+    size_t place = pvtCellGrid_Rank(cells, first, voxelY, voxelZ);
+    for (int x = first; x <= rows->all.last / PVT_CELLS; ++x) {
+        if (!pvtGetBit(voxels, (size_t)x)) {
+            continue;
         }
+        uint64_t bits = 0;
+        for (int i = 0; i < rows->count; ++i) {
+            bits |= GetCellBits(x, rows->span[i]) << rows->place[i];
+        }
+        MarkBits(&cells->cells[place++], bits);
     }
+}
+
+static void MarkCells(const pvtCellGrid* cells, int y, int z, RowSpan span)
+{
+    CellRows rows;
+    rows.span[0] = rows.all = span;
+    rows.place[0] = GetCellRow(y, z);
+    rows.count = 1;
+    MarkCellRows(cells, y / PVT_CELLS, z / PVT_CELLS, &rows);
 }
 
 static void MarkSpan(const Voxelizer* voxelizer, int y, int z, int firstX, int lastX)
 {
     if (voxelizer->cells != NULL) {
-        MarkCells(voxelizer->cells, y, z, firstX, lastX);
+        MarkCells(voxelizer->cells, y, z, (RowSpan){firstX, lastX});
         return;
     }
     const pvtBitGrid* grid = voxelizer->grid;
@@ -271,14 +294,6 @@ static void MarkSlab(const Voxelizer* voxelizer, const Slab* slab)
     }
 }
 
-// Rows of cells within a row of voxels, and the cells from the first to the last of all of them.
-typedef struct CellRows {
-    RowSpan span[PVT_CELLS * PVT_CELLS];
-    int place[PVT_CELLS * PVT_CELLS]; // of the row's bits in a word
-    int count;
-    RowSpan all;
-} CellRows;
-
 static void CollectRows(const Slab* slabs, int slabCount, int voxelY, CellRows* rows)
 {
     rows->count = 0;
@@ -297,24 +312,6 @@ static void CollectRows(const Slab* slabs, int slabCount, int voxelY, CellRows* 
                 rows->all.last = span.last > rows->all.last ? span.last : rows->all.last;
             }
         }
-    }
-}
-
-// A word is written once for all rows that pass it.
-static void MarkCellRows(const pvtCellGrid* cells, int voxelY, int voxelZ, const CellRows* rows)
-{
-    const uint64_t* voxels = pvtBitGrid_GetRow(&cells->voxels, voxelY, voxelZ);
-    const int first = rows->all.first / PVT_CELLS;
-    size_t place = pvtCellGrid_Rank(cells, first, voxelY, voxelZ);
-    for (int x = first; x <= rows->all.last / PVT_CELLS; ++x) {
-        if (!pvtGetBit(voxels, (size_t)x)) {
-            continue;
-        }
-        uint64_t bits = 0;
-        for (int i = 0; i < rows->count; ++i) {
-            bits |= GetCellBits(x, rows->span[i]) << rows->place[i];
-        }
-        MarkBits(&cells->cells[place++], bits);
     }
 }
 
