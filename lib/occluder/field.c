@@ -262,7 +262,7 @@ static pvtStatus MakePlaces(pvtContext* context, pvtField* field)
     uint32_t* next = pvtAllocate(context, length, sizeof *next);
     const size_t nodes = bricks[0] * bricks[1] * bricks[2] * BRICK * BRICK * BRICK;
     field->places[0] = next;
-    field->depths = pvtAllocate(context, nodes, sizeof *field->depths);
+    field->depths = pvtAllocateUnset(context, nodes, sizeof *field->depths);
     if (next == NULL || field->depths == NULL) {
         return pvtContext_GetStatus(context);
     }

@@ -9,6 +9,7 @@
 #include "refine.h"
 #include "voxel/bit_grid.h"
 
+#include <inttypes.h>
 #include <math.h>
 
 enum {
@@ -501,10 +502,33 @@ static pvtStatus CheckTriangles(pvtContext* context, pvtBuild* build)
     return status;
 }
 
+// Corners are stored as floats: far from the origin of a small mesh they cannot lie where they
+// should. Nothing else is known to make the check find anything.
+static void WarnOutside(pvtContext* context, const pvtBuild* build)
+{
+    const pvtBuildStats* stats = &build->stats;
+    double farthest = 0.0;
+    for (size_t i = 0; i < build->occluder.mesh.positionCount; ++i) {
+        const pvtVec3 p = build->occluder.mesh.positions[i];
+        farthest = fmax(farthest, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
+    }
+    const double gap = (double)nextafterf((float)farthest, INFINITY) - farthest;
+    if (stats->outside > 0) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the check found %" PRIu64 " voxel%s in which the occluder reaches where it may "
+               "not; coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g: "
+               "bring the mesh nearer to its origin, or do not rely on the error bound",
+               stats->outside, stats->outside == 1 ? "" : "s", farthest, gap, stats->voxelSize);
+    }
+}
+
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
 {
     pvtBuildStats* stats = &build->stats;
     pvtStatus status = CheckTriangles(context, build);
+    if (status == PVT_OK) {
+        WarnOutside(context, build);
+    }
     if (status == PVT_OK) {
         status = pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE,
                                      &build->occluder.mesh, &stats->measure);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <paravent/evaluate.h>
 #include <paravent/occluder.h>
+#include <stdio.h>
 #include <string.h>
 
 // A ring that lies flat: 24 by 12 quads.
@@ -225,6 +226,42 @@ static void triangles_find_their_places_within_a_shell(void** state)
     DestroyTestContext(context);
 }
 
+static void KeepWarning(pvtLogLevel level, const char* text, void* user)
+{
+    if (level == PVT_LOG_WARNING) {
+        (void)snprintf(user, 512, "%s", text);
+    }
+}
+
+// At 2²⁴ and more floats are 2 apart, which is most of the ring's height.
+static void what_floats_cannot_hold_is_found_by_the_check_and_told(void** state)
+{
+    (void)state;
+    char warning[512] = "";
+    pvtContextDef def = pvtDefaultContextDef();
+    def.threadCount = 1;
+    def.log = KeepWarning;
+    def.user = warning;
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    const pvtBuildOptions options = GetQuickOptions();
+    for (int isFar = 0; isFar < 2; ++isFar) {
+        pvtMesh torus;
+        MakeTorus(context, &torus);
+        for (size_t i = 0; i < torus.positionCount; ++i) {
+            torus.positions[i].y += isFar ? 16777217.0 : 0.0;
+        }
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &torus, &occluder, &stats));
+        assert_int_equal(stats.outside > 0, isFar);
+        assert_int_equal(strstr(warning, "stored in steps of 2,") != NULL, isFar);
+        pvtOccluder_Free(context, &occluder);
+        pvtMesh_Free(context, &torus);
+    }
+    DestroyTestContext(context);
+}
+
 static void the_budget_holds_and_nothing_leaves_the_allowed_voxels(void** state)
 {
     (void)state;
@@ -386,6 +423,7 @@ int main(void)
         cmocka_unit_test(a_tolerance_hides_much_more_and_hardly_anything_that_is_seen),
         cmocka_unit_test(a_wall_is_covered_within_a_tolerance),
         cmocka_unit_test(triangles_find_their_places_within_a_shell),
+        cmocka_unit_test(what_floats_cannot_hold_is_found_by_the_check_and_told),
         cmocka_unit_test(the_budget_holds_and_nothing_leaves_the_allowed_voxels),
         cmocka_unit_test(the_hole_of_a_torus_stays_open),
         cmocka_unit_test(threads_do_not_change_a_byte),
