@@ -215,7 +215,8 @@ void pvtPrintSummary(pvtRun* run, const pvtGenerateOptions* options, const pvtGe
         PrintOccluder(run, options, generated);
     }
     if (stats->measureOfSolid > 0.0) {
-        pvtReport_Say(&run->report, "  measure      %.1f %% of the solid's; evaluate tells precision and recall",
+        pvtReport_Say(&run->report,
+                      "  measure      %.1f %% of the solid's; evaluate tells precision and recall",
                       100.0 * stats->measure / stats->measureOfSolid);
     }
     pvtReport_Say(&run->report, "  error bound  %.4g (voxels of %.4g, %d along the longest side)",

@@ -6,6 +6,7 @@
 
 #include "base/context.h"
 #include "base/vector.h"
+#include "voxel/bit_grid.h"
 
 enum { MORE_VIEWS = 3 }; // for each that is optimised for
 
@@ -59,6 +60,26 @@ static pvtStatus MeasureMesh(pvtContext* context, const pvtBuild* build, const p
                                measure);
 }
 
+// Polygons are inside as they were made. Far from the origin, what floats make of their corners may
+// not be.
+static bool IsFlatInside(const pvtBuild* build)
+{
+    const pvtOccluder* flat = &build->flat;
+    size_t triangle = 0;
+    for (size_t p = 0; p < flat->loops.loopCount; ++p) {
+        const bool isOnSheet = pvtSheetSet_Find(&build->sheets, &flat->planes[p]) != NULL;
+        const size_t end = triangle + (flat->loops.starts[p + 1] - flat->loops.starts[p] - 2);
+        for (; triangle < end; ++triangle) {
+            pvtVec3 corners[3];
+            pvtGetGridTriangle(&flat->frame, &flat->mesh, triangle, corners);
+            if (!isOnSheet && !pvtInsideTest_HasTriangle(&build->inside, corners)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 // What hides more rectangles nearly always has the greater measure, too. Where it has not, the
 // polygons that were selected are taken: the measure never falls.
 static pvtStatus TakeFlatIfBetter(pvtContext* context, pvtBuild* build)
@@ -69,7 +90,7 @@ static pvtStatus TakeFlatIfBetter(pvtContext* context, pvtBuild* build)
     if (status == PVT_OK) {
         status = MeasureMesh(context, build, &build->occluder.mesh, &bent);
     }
-    if (status == PVT_OK && bent < flat) {
+    if (status == PVT_OK && bent < flat && IsFlatInside(build)) {
         const pvtOccluder worse = build->occluder;
         build->occluder = build->flat;
         build->flat = worse;

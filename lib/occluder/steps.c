@@ -4,12 +4,9 @@
 #include "ascent.h"
 #include "base/context.h"
 #include "base/vector.h"
-#include "ceiling.h"
-#include "check.h"
 #include "refine.h"
 #include "voxel/bit_grid.h"
 
-#include <inttypes.h>
 #include <math.h>
 
 enum {
@@ -20,8 +17,6 @@ enum {
 };
 
 static const double SQRT3 = 1.7320508075688772;
-static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
-static const double SAFE_SHARE = 0.8; // of the voxels: with more, that of the measure is not small
 
 pvtBuildOptions pvtDefaultBuildOptions(void)
 {
@@ -159,8 +154,7 @@ pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build)
     return pvtVoxelizeMesh(context, &options, build->mesh, &build->surface);
 }
 
-// The box around the set voxels; false when there are none.
-static bool FindBounds(const pvtBitGrid* grid, pvtBox3* bounds)
+bool pvtFindVoxelBounds(const pvtBitGrid* grid, pvtBox3* bounds)
 {
     pvtGridBox box;
     const bool isFound = pvtBitGrid_FindBounds(grid, &box);
@@ -176,7 +170,7 @@ static bool FindBounds(const pvtBitGrid* grid, pvtBox3* bounds)
 void pvtWidenBounds(const pvtBitGrid* grid, pvtBox3* bounds)
 {
     pvtBox3 more;
-    if (grid->words != NULL && FindBounds(grid, &more)) {
+    if (grid->words != NULL && pvtFindVoxelBounds(grid, &more)) {
         for (int axis = 0; axis < 3; ++axis) {
             pvtSetAxis(&bounds->lower, axis,
                        fmin(pvtGetAxis(bounds->lower, axis), pvtGetAxis(more.lower, axis)));
@@ -256,7 +250,7 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
     if (status == PVT_OK && build->cells.count > 0 && pvtMayAscend(build)) {
         status = pvtListTouching(context, build->mesh, &build->cells, &build->touching);
     }
-    if (status == PVT_OK && !FindBounds(&build->allowed, &build->bounds)) {
+    if (status == PVT_OK && !pvtFindVoxelBounds(&build->allowed, &build->bounds)) {
         build->bounds =
             (pvtBox3){{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
         status = pvtMayUseSheets(build) ? PVT_OK : pvtFailNothingInside(context, build);
@@ -455,90 +449,6 @@ pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
             status = pvtGrowSheetPanels(context, &build->sheets, build->deviation, build->mesh,
                                         occluders[i]);
         }
-    }
-    return status;
-}
-
-// A strict interior may be a small part of what the mesh hides: a chair's legs are all surface.
-// Then recall is low whatever the budget, and only other options help.
-static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
-{
-    pvtBox3 bounds;
-    double hidden = 0.0;
-    const double share =
-        (double)pvtBitGrid_Count(&build->allowed) / (double)build->solid.insideCount;
-    if (build->stats.tolerance > 0.0 || share > SAFE_SHARE ||
-        !FindBounds(&build->solid.inside, &bounds)) {
-        return PVT_OK;
-    }
-    const pvtMeasureGridOptions options = {&build->views, &bounds, PVT_MEASURE_SIZE};
-    const pvtStatus status = pvtMeasureGrid(context, &options, &build->solid.inside, NULL, &hidden);
-    if (status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden) {
-        pvtLog(
-            context, PVT_LOG_WARNING,
-            "only %.1f %% of what the mesh hides lies strictly inside or flat on it at %d voxels, "
-            "and an occluder can hide no more; --tolerance 1vx uses the touched voxels too, a "
-            "higher --resolution finds thinner parts",
-            100.0 * build->stats.measureOfSolid / hidden, build->stats.resolution);
-    }
-    return status;
-}
-
-// The promise, kept by every triangle.
-static pvtStatus CheckTriangles(pvtContext* context, pvtBuild* build)
-{
-    const pvtMesh* mesh = &build->occluder.mesh;
-    const pvtInterior interior = pvtGetInterior(build);
-    uint64_t* outside = pvtAllocate(context, mesh->triangleCount, sizeof *outside);
-    pvtStatus status = outside == NULL ? pvtContext_GetStatus(context)
-                                       : pvtCheckTriangles(context, &interior, mesh, outside);
-    for (size_t t = 0; t < mesh->triangleCount && status == PVT_OK; ++t) {
-        build->stats.outside += outside[t];
-    }
-    if (status == PVT_OK) {
-        status = pvtCheckSheets(context, build, outside);
-    }
-    pvtRelease(context, outside);
-    return status;
-}
-
-// Corners are stored as floats: far from the origin of a small mesh they cannot lie where they
-// should. Nothing else is known to make the check find anything.
-static void WarnOutside(pvtContext* context, const pvtBuild* build)
-{
-    const pvtBuildStats* stats = &build->stats;
-    double farthest = 0.0;
-    for (size_t i = 0; i < build->occluder.mesh.positionCount; ++i) {
-        const pvtVec3 p = build->occluder.mesh.positions[i];
-        farthest = fmax(farthest, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
-    }
-    const double gap = (double)nextafterf((float)farthest, INFINITY) - farthest;
-    if (stats->outside > 0) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the check found %" PRIu64 " voxel%s in which the occluder reaches where it may "
-               "not; coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g: "
-               "bring the mesh nearer to its origin, or do not rely on the error bound",
-               stats->outside, stats->outside == 1 ? "" : "s", farthest, gap, stats->voxelSize);
-    }
-}
-
-pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
-{
-    pvtBuildStats* stats = &build->stats;
-    pvtStatus status = CheckTriangles(context, build);
-    if (status == PVT_OK) {
-        WarnOutside(context, build);
-    }
-    if (status == PVT_OK) {
-        status = pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE,
-                                     &build->occluder.mesh, &stats->measure);
-        build->occluder.measure = stats->measure;
-    }
-    if (status == PVT_OK) {
-        status = pvtMeasureCeiling(context, build);
-    }
-    if (status == PVT_OK) {
-        status = CompareWithMesh(context, build);
     }
     return status;
 }

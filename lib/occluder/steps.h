@@ -51,6 +51,8 @@ enum { PVT_MEASURE_SIZE = 64 }; ///< [px] of the masks that the stats are measur
 
 /// PVT_NOTHING_INSIDE, with the options that would help.
 pvtStatus pvtFailNothingInside(pvtContext* context, const pvtBuild* build);
+/// [wu] Of the set voxels; false when there are none.
+bool pvtFindVoxelBounds(const pvtBitGrid* grid, pvtBox3* bounds);
 /// Makes the bounds hold the set voxels.
 void pvtWidenBounds(const pvtBitGrid* grid, pvtBox3* bounds);
 /// The measure of everything that may be covered, into the stats; needs the views.

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// What is known of an occluder when it is done: whether it keeps the promise, and how much of what
+// could be hidden it hides.
+#include "ceiling.h"
+#include "check.h"
+#include "steps.h"
+
+#include "base/context.h"
+#include "base/vector.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
+static const double COARSE_STEP = 0.0625;   // [vx]
+static const double SAFE_SHARE = 0.8; // of the voxels: with more, that of the measure is not small
+
+// A strict interior may be a small part of what the mesh hides: a chair's legs are all surface.
+// Then recall is low whatever the budget, and only other options help.
+static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
+{
+    pvtBox3 bounds;
+    double hidden = 0.0;
+    const double share =
+        (double)pvtBitGrid_Count(&build->allowed) / (double)build->solid.insideCount;
+    if (build->stats.tolerance > 0.0 || share > SAFE_SHARE ||
+        !pvtFindVoxelBounds(&build->solid.inside, &bounds)) {
+        return PVT_OK;
+    }
+    const pvtMeasureGridOptions options = {&build->views, &bounds, PVT_MEASURE_SIZE};
+    const pvtStatus status = pvtMeasureGrid(context, &options, &build->solid.inside, NULL, &hidden);
+    if (status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden) {
+        pvtLog(
+            context, PVT_LOG_WARNING,
+            "only %.1f %% of what the mesh hides lies strictly inside or flat on it at %d voxels, "
+            "and an occluder can hide no more; --tolerance 1vx uses the touched voxels too, a "
+            "higher --resolution finds thinner parts",
+            100.0 * build->stats.measureOfSolid / hidden, build->stats.resolution);
+    }
+    return status;
+}
+
+// The promise, kept by every triangle.
+static pvtStatus CheckTriangles(pvtContext* context, pvtBuild* build)
+{
+    const pvtMesh* mesh = &build->occluder.mesh;
+    const pvtInterior interior = pvtGetInterior(build);
+    uint64_t* outside = pvtAllocate(context, mesh->triangleCount, sizeof *outside);
+    pvtStatus status = outside == NULL ? pvtContext_GetStatus(context)
+                                       : pvtCheckTriangles(context, &interior, mesh, outside);
+    for (size_t t = 0; t < mesh->triangleCount && status == PVT_OK; ++t) {
+        build->stats.outside += outside[t];
+    }
+    if (status == PVT_OK) {
+        status = pvtCheckSheets(context, build, outside);
+    }
+    pvtRelease(context, outside);
+    return status;
+}
+
+// Corners are stored as floats, which far from the origin of a small mesh are few.
+typedef struct Storage {
+    double farthest; // coordinate
+    double step;     // between two that can be stored there
+} Storage;
+
+static Storage FindStorage(const pvtBuild* build)
+{
+    const pvtVec3 corners[] = {build->bounds.lower, build->bounds.upper};
+    double farthest = 0.0;
+    for (int i = 0; i < 6; ++i) {
+        farthest = fmax(farthest, fabs(pvtGetAxis(corners[i / 3], i % 3)));
+    }
+    return (Storage){farthest, (double)(nextafterf((float)farthest, INFINITY) - (float)farthest)};
+}
+
+// The ascent takes away what it cannot bring inside, which with coarse steps may be all.
+static pvtStatus FailEmpty(pvtContext* context, const pvtBuild* build)
+{
+    const Storage storage = FindStorage(build);
+    const double voxel = build->stats.voxelSize;
+    return storage.step > COARSE_STEP * voxel
+               ? pvtFail(context, PVT_NOTHING_INSIDE,
+                         "coordinates as large as %g are stored in steps of %.2g, and voxels are "
+                         "%.2g, so that no triangle can lie inside: bring the mesh nearer to its "
+                         "origin",
+                         storage.farthest, storage.step, voxel)
+               : pvtFailNothingInside(context, build);
+}
+
+// Nothing but coarse steps is known to make the check find anything.
+static void WarnOutside(pvtContext* context, const pvtBuild* build)
+{
+    const pvtBuildStats* stats = &build->stats;
+    const Storage storage = FindStorage(build);
+    if (stats->outside > 0) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "the check found %" PRIu64 " voxel%s in which the occluder reaches where it may "
+               "not; coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g: "
+               "bring the mesh nearer to its origin, or do not rely on the error bound",
+               stats->outside, stats->outside == 1 ? "" : "s", storage.farthest, storage.step,
+               stats->voxelSize);
+    }
+}
+
+pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
+{
+    pvtBuildStats* stats = &build->stats;
+    if (build->occluder.mesh.triangleCount == 0) {
+        return FailEmpty(context, build);
+    }
+    pvtStatus status = CheckTriangles(context, build);
+    if (status == PVT_OK) {
+        WarnOutside(context, build);
+    }
+    if (status == PVT_OK) {
+        status = pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE,
+                                     &build->occluder.mesh, &stats->measure);
+        build->occluder.measure = stats->measure;
+    }
+    if (status == PVT_OK) {
+        status = pvtMeasureCeiling(context, build);
+    }
+    if (status == PVT_OK) {
+        status = CompareWithMesh(context, build);
+    }
+    return status;
+}
