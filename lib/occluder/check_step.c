@@ -12,7 +12,7 @@
 #include <math.h>
 
 static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
-static const double COARSE_STEP = 0.0625;   // [vx]
+static const double COARSE_STEP = 0.25;     // [vx]
 static const double SAFE_SHARE = 0.8; // of the voxels: with more, that of the measure is not small
 
 // A strict interior may be a small part of what the mesh hides: a chair's legs are all surface.
@@ -83,13 +83,13 @@ static pvtStatus FailEmpty(pvtContext* context, const pvtBuild* build)
                ? pvtFail(context, PVT_NOTHING_INSIDE,
                          "coordinates as large as %g are stored in steps of %.2g, and voxels are "
                          "%.2g, so that no triangle can lie inside: bring the mesh nearer to its "
-                         "origin",
+                         "origin, or try --separate, which keeps each mesh's own coordinates",
                          storage.farthest, storage.step, voxel)
                : pvtFailNothingInside(context, build);
 }
 
 // Nothing but coarse steps is known to make the check find anything.
-static void WarnOutside(pvtContext* context, const pvtBuild* build)
+static void WarnOfStorage(pvtContext* context, const pvtBuild* build)
 {
     const pvtBuildStats* stats = &build->stats;
     const Storage storage = FindStorage(build);
@@ -97,9 +97,16 @@ static void WarnOutside(pvtContext* context, const pvtBuild* build)
         pvtLog(context, PVT_LOG_WARNING,
                "the check found %" PRIu64 " voxel%s in which the occluder reaches where it may "
                "not; coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g: "
-               "bring the mesh nearer to its origin, or do not rely on the error bound",
+               "bring the mesh nearer to its origin, or try --separate, which keeps each mesh's "
+               "own coordinates",
                stats->outside, stats->outside == 1 ? "" : "s", storage.farthest, storage.step,
                stats->voxelSize);
+    } else if (storage.step > COARSE_STEP * stats->voxelSize) {
+        pvtLog(context, PVT_LOG_WARNING,
+               "coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g, so "
+               "that corners lie where they can rather than where they hide most: bring the mesh "
+               "nearer to its origin, or try --separate, which keeps each mesh's own coordinates",
+               storage.farthest, storage.step, stats->voxelSize);
     }
 }
 
@@ -111,7 +118,7 @@ pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
     }
     pvtStatus status = CheckTriangles(context, build);
     if (status == PVT_OK) {
-        WarnOutside(context, build);
+        WarnOfStorage(context, build);
     }
     if (status == PVT_OK) {
         status = pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE,
