@@ -64,6 +64,12 @@ static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal
         goal->cells = pvtGetInterior(build).cells;
         return PVT_OK;
     }
+    // What is below a landscape is inside because somebody says so. From the side it is seen, below
+    // the landscape's edge, and hides what the landscape does not.
+    if (build->options->terrain) {
+        goal->voxels = &build->solid.surface;
+        return PVT_OK;
+    }
     if (pvtGetLongestSide(build->solid.inside.frame.size) > FINEST_GOAL) {
         goal->voxels = &build->solid.inside;
         return PVT_OK;

@@ -145,7 +145,7 @@ static pvtStatus SortPoints(pvtContext* context, const pvtField* field, const ui
 static pvtStatus ListBorder(pvtContext* context, const pvtField* field, Splatter* splatter)
 {
     const size_t count = (size_t)field->size[0] * (size_t)field->size[1] * (size_t)field->size[2];
-    BorderTask task = {field, pvtAllocate(context, count, 1)};
+    BorderTask task = {field, pvtAllocateUnset(context, count, 1)};
     splatter->nodeSize = (float)field->nodeSize;
     if (task.exposures == NULL) {
         return pvtContext_GetStatus(context);
