@@ -24,7 +24,6 @@ typedef struct Range {
 
 void pvtInsideTest_Free(pvtContext* context, pvtInsideTest* test)
 {
-    pvtRelease(context, test->open);
     pvtRelease(context, test->reach);
     *test = (pvtInsideTest){0};
 }
@@ -134,15 +133,8 @@ pvtStatus pvtCreateInsideTest(pvtContext* context, const pvtInterior* interior, 
         count *= (size_t)test->blocks[axis];
     }
     test->reach = pvtAllocate(context, count, sizeof *test->reach);
-    const pvtCellGrid* cells = test->interior.cells;
-    test->open = cells != NULL ? pvtAllocate(context, cells->count, sizeof *test->open) : NULL;
-    if (test->reach == NULL || (cells != NULL && test->open == NULL)) {
-        pvtInsideTest_Free(context, test);
+    if (test->reach == NULL) {
         return pvtContext_GetStatus(context);
-    }
-    const bool mayEnterBorder = interior->touching != NULL;
-    for (size_t v = 0; cells != NULL && v < cells->count; ++v) {
-        test->open[v] = cells->cells[v] | (mayEnterBorder ? cells->border[v] : 0);
     }
     MarkBlocks(test);
     SpreadReach(test);
@@ -170,7 +162,7 @@ static bool IsPlaceInside(const pvtInsideTest* test, const double point[3])
         cells != NULL ? pvtCellGrid_Find(cells, voxel[0], voxel[1], voxel[2]) : PVT_NO_CELLS;
     const int bit =
         cell[0] % PVT_CELLS + PVT_CELLS * (cell[1] % PVT_CELLS + PVT_CELLS * (cell[2] % PVT_CELLS));
-    return place != PVT_NO_CELLS && (test->open[place] >> bit & 1) != 0;
+    return place != PVT_NO_CELLS && (pvtInsideTest_GetOpen(test, place) >> bit & 1) != 0;
 }
 
 // A point that lies between two layers may be in either.

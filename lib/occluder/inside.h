@@ -7,7 +7,6 @@
 
 typedef struct pvtInsideTest {
     pvtInterior interior;
-    uint64_t* open; ///< of each voxel of interior.cells: cells that are not outside; null: none
     int blockSize;  ///< [vx]
     int blocks[3];  ///< along each axis
     uint8_t* reach; ///< one a block: 0 when a voxel of it is clear, else how many blocks away,
@@ -34,6 +33,13 @@ bool pvtInsideTest_HasTriangle(const pvtInsideTest* test, const pvtVec3 corners[
 /// beyond the triangle by less than a cell if at all, or where it crosses the surface.
 bool pvtInsideTest_FindOutside(const pvtInsideTest* test, const pvtVec3 corners[3],
                                pvtVec3* outside);
+
+/// Of a voxel of interior.cells, by its place there: cells that a triangle may enter.
+static inline uint64_t pvtInsideTest_GetOpen(const pvtInsideTest* test, size_t place)
+{
+    const pvtCellGrid* cells = test->interior.cells;
+    return cells->cells[place] | (test->interior.touching != NULL ? cells->border[place] : 0);
+}
 
 /// Place of a block in `reach`.
 static inline size_t pvtInsideTest_GetBlock(const pvtInsideTest* test, int x, int y, int z)

@@ -218,7 +218,7 @@ static bool IsVoxelInside(Walk* walk, PieceCells* piece, const int voxel[3])
     const pvtCellGrid* grid = test->interior.cells;
     const size_t place =
         grid != NULL ? pvtCellGrid_Find(grid, voxel[0], voxel[1], voxel[2]) : PVT_NO_CELLS;
-    const uint64_t open = place != PVT_NO_CELLS ? test->open[place] : 0;
+    const uint64_t open = place != PVT_NO_CELLS ? pvtInsideTest_GetOpen(test, place) : 0;
     const pvtVec3 middle = {voxel[0] + 0.5, voxel[1] + 0.5, voxel[2] + 0.5};
     uint64_t passed = GetCellsInPlane(walk, pvtDot(walk->normal, middle) - walk->distance);
     if ((passed & ~open) != 0) {

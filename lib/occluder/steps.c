@@ -30,6 +30,14 @@ pvtBuildOptions pvtDefaultBuildOptions(void)
                              .seed = 1};
 }
 
+static void FreeCandidates(pvtContext* context, pvtBuild* build)
+{
+    pvtSliceVolume_Free(context, &build->volume);
+    pvtSliceVolume_Free(context, &build->solidVolume);
+    pvtSectionSet_Free(context, &build->sections);
+    pvtCandidateSet_Free(context, &build->candidates);
+}
+
 void pvtBuild_Free(pvtContext* context, pvtBuild* build)
 {
     if (build->hasSlicer && build->options->releaseSlicer != NULL) {
@@ -41,12 +49,9 @@ void pvtBuild_Free(pvtContext* context, pvtBuild* build)
     pvtCellGrid_Free(context, &build->cells);
     pvtTouching_Free(context, &build->touching);
     pvtInsideTest_Free(context, &build->inside);
-    pvtSliceVolume_Free(context, &build->volume);
-    pvtSliceVolume_Free(context, &build->solidVolume);
-    pvtSectionSet_Free(context, &build->sections);
+    FreeCandidates(context, build);
     pvtSheetSet_Free(context, &build->sheets);
     pvtBitGrid_Free(context, &build->hiding);
-    pvtCandidateSet_Free(context, &build->candidates);
     pvtViewSet_Free(context, &build->views);
     pvtOccluder_Free(context, &build->occluder);
     pvtOccluder_Free(context, &build->flat);
@@ -450,5 +455,7 @@ pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build)
                                         occluders[i]);
         }
     }
+    // Polygons are chosen: what comes needs the memory.
+    FreeCandidates(context, build);
     return status;
 }
