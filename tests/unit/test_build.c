@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "check.h"
+#include "warnings.h"
 
 #include "base/vector.h"
 #include "voxel_shapes.h"
@@ -7,7 +7,6 @@
 #include <math.h>
 #include <paravent/evaluate.h>
 #include <paravent/occluder.h>
-#include <stdio.h>
 #include <string.h>
 
 // A ring that lies flat: 24 by 12 quads.
@@ -274,13 +273,6 @@ static void triangles_find_their_places_within_a_shell(void** state)
     DestroyTestContext(context);
 }
 
-static void KeepWarning(pvtLogLevel level, const char* text, void* user)
-{
-    if (level == PVT_LOG_WARNING) {
-        (void)snprintf(user, 512, "%s", text);
-    }
-}
-
 // At 2²⁰ floats are an eighth apart, at 2²⁴ 2, which is more than the ring is high. The ascent goes
 // by what is stored; the paper's polygons are made without.
 static void what_floats_cannot_hold_stays_inside_or_is_told(void** state)
@@ -296,13 +288,8 @@ static void what_floats_cannot_hold_stays_inside_or_is_told(void** state)
                  {1048576.0, PVT_METHOD_PLANAR, PVT_OK, "stored in steps of 0.12,"},
                  {16777217.0, PVT_METHOD_PLANAR, PVT_NOTHING_INSIDE, "stored in steps of 2,"},
                  {16777217.0, PVT_METHOD_PAPER, PVT_OK, "stored in steps of 2,"}};
-    char warning[512] = "";
-    pvtContextDef def = pvtDefaultContextDef();
-    def.threadCount = 1;
-    def.log = KeepWarning;
-    def.user = warning;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    Warnings warnings;
+    pvtContext* context = CreateWarningContext(&warnings);
     for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
         pvtMesh torus;
         MakeTorus(context, &torus);
@@ -313,10 +300,11 @@ static void what_floats_cannot_hold_stays_inside_or_is_told(void** state)
         options.method = cases[c].method;
         pvtOccluder occluder;
         pvtBuildStats stats;
-        warning[0] = '\0';
+        warnings.text[0] = '\0';
         assert_int_equal(pvtBuildOccluder(context, &options, &torus, &occluder, &stats),
                          cases[c].status);
-        const char* text = cases[c].status == PVT_OK ? warning : pvtContext_GetMessage(context);
+        const char* text =
+            cases[c].status == PVT_OK ? warnings.text : pvtContext_GetMessage(context);
         assert_int_equal(stats.outside > 0, c == 4);
         assert_true(cases[c].told == NULL ? text[0] == '\0' : strstr(text, cases[c].told) != NULL);
         pvtOccluder_Free(context, &occluder);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "voxel_shapes.h"
+#include "warnings.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -252,34 +253,22 @@ static void terrain_is_told_for_a_height_field(void** state)
     DestroyTestContext(context);
 }
 
-static void KeepWarning(pvtLogLevel level, const char* text, void* user)
-{
-    if (level == PVT_LOG_WARNING) {
-        (void)snprintf(user, 256, "%s", text);
-    }
-}
-
 static void a_hollow_solid_is_warned_about_with_the_size_that_helps(void** state)
 {
     (void)state;
-    char warning[256] = "";
-    pvtContextDef def = pvtDefaultContextDef();
-    def.threadCount = 1;
-    def.log = KeepWarning;
-    def.user = warning;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    Warnings warnings;
+    pvtContext* context = CreateWarningContext(&warnings);
     pvtBitGrid surface;
     MakeShell(context, 20, 0.0, &surface);
     assert_true(GetFraction(context, &surface, pvtDefaultSolidOptions()) > 0.4);
-    assert_string_equal(warning, "");
+    assert_string_equal(warnings.text, "");
     pvtBitGrid_Free(context, &surface);
     MakeShell(context, 20, 5.0, &surface);
     const pvtRemedy remedy = FindRemedy(context, &surface, pvtDefaultSolidOptions());
     char expected[64];
     (void)snprintf(expected, sizeof expected, "--smallest-hole %g ", remedy.smallestHole);
-    assert_non_null(strstr(warning, "hollow"));
-    assert_non_null(strstr(warning, expected));
+    assert_non_null(strstr(warnings.text, "hollow"));
+    assert_non_null(strstr(warnings.text, expected));
     pvtBitGrid_Free(context, &surface);
     DestroyTestContext(context);
 }
