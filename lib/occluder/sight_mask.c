@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIZE = PVT_SIGHT_SIZE, CELLS = PVT_SIGHT_CELLS };
+enum { SIZE = PVT_SIGHT_SIZE, CELLS = PVT_SIGHT_CELLS, LANES = 8 };
 
 void pvtProjectCorners(const pvtSight* sight, const pvtTriangleSet* set, float (*places)[2])
 {
@@ -22,6 +22,8 @@ void pvtProjectCorners(const pvtSight* sight, const pvtTriangleSet* set, float (
 typedef struct Spans {
     float low[2][2], high[2][2]; // x = line[0] + line[1] × y
     int first, end;              // rows
+    float least, most;           // that any row has: constants would end in branches, not vectors
+    uint64_t one;                // 1
 } Spans;
 
 static void AddLine(float lines[2][2], int* count, float base, float slope)
@@ -65,50 +67,62 @@ static bool MakeSpans(const float* const p[3], const float insets[3], Spans* spa
     if (lows == 0 || highs == 0) {
         return false;
     }
+    spans->least = 0.0F;
+    spans->one = 1;
+    spans->most = SIZE;
     spans->first = least < 0.5F ? 0 : (int)(least + 0.5F);
     spans->end = most >= SIZE ? SIZE : (int)(most + 0.5F);
     return spans->first < spans->end;
 }
 
-// The bits below each of `ends`, clamped to the 64 from `from` on, without those below each of
-// `begins`.
+// Rows in groups of LANES, the first of which may begin before the first row.
+static int GetFirstLane(const Spans* spans)
+{
+    return spans->first / LANES * LANES;
+}
+
+// In each row the bits below its end, clamped to the 64 from `from` on, without those below its
+// begin. `count` is a multiple of LANES. `one` is 1, and not known here: compilers take no
+// constants to be vectors that are shifted by others.
 PVT_VECTOR_CLONES
 static void SetSpans(const int32_t* restrict begins, const int32_t* restrict ends, int count,
-                     int32_t from, uint64_t* restrict words)
+                     int32_t from, uint64_t one, uint64_t* restrict words)
 {
-    for (int i = 0; i < count; ++i) {
-        int32_t begin = begins[i] - from, end = ends[i] - from;
-        begin = begin > 0 ? begin : 0;
-        begin = begin < 64 ? begin : 64;
-        end = end > 0 ? end : 0;
-        end = end < 64 ? end : 64;
+    for (int i = 0; i < (count & -LANES); ++i) {
+        int32_t low = begins[i] - from, high = ends[i] - from;
+        low = low > 0 ? low : 0;
+        high = high > 0 ? high : 0;
+        const uint64_t begin = (uint64_t)(low < 64 ? low : 64);
+        const uint64_t end = (uint64_t)(high < 64 ? high : 64);
         // A shift by 64 would not be defined: then the second part sets all.
-        const uint64_t below =
-            ((UINT64_C(1) << (end & 63)) - 1) | (UINT64_C(0) - (uint64_t)(end >> 6));
-        const uint64_t before =
-            ((UINT64_C(1) << (begin & 63)) - 1) | (UINT64_C(0) - (uint64_t)(begin >> 6));
+        const uint64_t below = ((one << (end & 63)) - one) | (UINT64_C(0) - (end >> 6));
+        const uint64_t before = ((one << (begin & 63)) - one) | (UINT64_C(0) - (begin >> 6));
         words[i] |= below & ~before;
     }
 }
 
-// Pixels whose centres are covered: from the first to before the second of each row.
+// Pixels whose centres are covered: from the first to before the second of each row. In rows of the
+// groups that are not the triangle's, none.
 PVT_VECTOR_CLONES
 static void FindSpans(const Spans* spans, int32_t* restrict begins, int32_t* restrict ends)
 {
-    const int height = spans->end - spans->first;
-    for (int i = 0; i < height; ++i) {
-        const float y = (float)(spans->first + i) + 0.5F;
-        const float a = spans->low[0][0] + spans->low[0][1] * y;
-        const float b = spans->low[1][0] + spans->low[1][1] * y;
-        const float c = spans->high[0][0] + spans->high[0][1] * y;
-        const float d = spans->high[1][0] + spans->high[1][1] * y;
-        float low = a > b ? a : b, high = c < d ? c : d;
-        low = low > 0.0F ? low : 0.0F;
-        low = low < SIZE ? low : SIZE;
-        high = high < SIZE ? high : SIZE;
-        high = high > low ? high : low;
-        begins[i] = (int32_t)(low + 0.5F);
-        ends[i] = (int32_t)(high + 0.5F);
+    const float least = spans->least, most = spans->most;
+    for (int row = GetFirstLane(spans); row < spans->end; row += LANES) {
+        for (int i = row; i < row + LANES; ++i) {
+            const float y = (float)i + 0.5F;
+            const float a = spans->low[0][0] + spans->low[0][1] * y;
+            const float b = spans->low[1][0] + spans->low[1][1] * y;
+            const float c = spans->high[0][0] + spans->high[0][1] * y;
+            const float d = spans->high[1][0] + spans->high[1][1] * y;
+            float low = a > b ? a : b, high = c < d ? c : d;
+            low = low > least ? low : least;
+            low = low < most ? low : most;
+            high = high < most ? high : most;
+            high = high > low ? high : low;
+            begins[i] = (int32_t)(low + 0.5F);
+            const int32_t end = (int32_t)(high + 0.5F);
+            ends[i] = i >= spans->first && i < spans->end ? end : 0;
+        }
     }
 }
 
@@ -127,12 +141,15 @@ pvtSightRows pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2],
     }
     int32_t begins[SIZE], ends[SIZE];
     FindSpans(&spans, begins, ends);
+    const int first = GetFirstLane(&spans);
+    const int count = (spans.end - first + LANES - 1) / LANES * LANES;
     const float left = fminf(p[0][0], fminf(p[1][0], p[2][0]));
     const float right = fmaxf(p[0][0], fmaxf(p[1][0], p[2][0]));
     for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
         const int32_t from = 64 * half;
         if (left < (float)(from + 64) && right > (float)from) {
-            SetSpans(begins, ends, spans.end - spans.first, from, mask->words[half] + spans.first);
+            SetSpans(begins + first, ends + first, count, from, spans.one,
+                     mask->words[half] + first);
         }
     }
     return (pvtSightRows){(uint8_t)spans.first, (uint8_t)spans.end};
