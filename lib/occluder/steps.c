@@ -236,6 +236,8 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
     solid.strict = !IsPaper(build) || build->stats.tolerance == 0.0;
     solid.ground = options->ground;
     solid.terrain = options->terrain;
+    // Strictly inside there is nothing below the lowest valleys: they would be holes in any plate.
+    solid.below = build->stats.tolerance > 0.0 ? 0 : 1;
     solid.up = options->up;
     solid.enclosed = options->enclosed;
     pvtStatus status = pvtFillSolid(context, &solid, &build->surface, &build->solid);

@@ -10,8 +10,10 @@
 pvtStatus pvtFloodOutside(pvtContext* context, const pvtSolidOptions* options,
                           const pvtBitGrid* surface, pvtBitGrid* inside);
 
-/// Adds all below the lowest surface voxel of each column, down to the surface's lowest layer.
-void pvtFillBelowTerrain(const pvtBitGrid* surface, pvtAxis up, pvtBitGrid* inside);
+/// Adds all below the lowest surface voxel of each column, down to the surface's lowest layer and
+/// `below` farther, in the grid.
+void pvtFillBelowTerrain(const pvtSolidOptions* options, const pvtBitGrid* surface,
+                         pvtBitGrid* inside);
 
 /// The columns along an axis that hold surface voxels, how many runs of such all columns hold, and
 /// the columns with more than `most` of them.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the waves through touched voxels and the judgement of their cells share: voxels are looked
 // at in rows, with the eight rows around theirs, and their cells are found by rank, so that nobody
-// keeps a list of who lies beside whom.
+// keeps a list of who lies beside whom. All of that is part of the clones that use it: machines
+// with wide vectors count bits, which ranks are made of, by an instruction.
 #ifndef PVT_VOXEL_SHELL_H
 #define PVT_VOXEL_SHELL_H
 

@@ -12,8 +12,12 @@ enum { GRIDS_NEEDED = 2 };
 
 pvtSolidOptions pvtDefaultSolidOptions(void)
 {
-    return (pvtSolidOptions){
-        .smallestHole = 0.0, .ground = false, .terrain = false, .up = PVT_AXIS_Y, .enclosed = -1};
+    return (pvtSolidOptions){.smallestHole = 0.0,
+                             .ground = false,
+                             .terrain = false,
+                             .below = 0,
+                             .up = PVT_AXIS_Y,
+                             .enclosed = -1};
 }
 
 void pvtSolid_Free(pvtContext* context, pvtSolid* solid)
@@ -34,6 +38,10 @@ static pvtStatus CheckOptions(pvtContext* context, const pvtSolidOptions* option
                        "enclosed is %d; it must be -1 (off) or 0 to 25 directions",
                        options->enclosed);
     }
+    if (options->below < 0) {
+        return pvtFail(context, PVT_INVALID_ARGUMENT, "below is %d; it may not be less than 0",
+                       options->below);
+    }
     if (options->up != PVT_AXIS_X && options->up != PVT_AXIS_Y && options->up != PVT_AXIS_Z) {
         return pvtFail(context, PVT_INVALID_ARGUMENT, "axis %d is none of x, y and z",
                        (int)options->up);
@@ -46,7 +54,7 @@ pvtStatus pvtFindInside(pvtContext* context, const pvtSolidOptions* options,
 {
     pvtStatus status = pvtFloodOutside(context, options, surface, inside);
     if (status == PVT_OK && options->terrain) {
-        pvtFillBelowTerrain(surface, options->up, inside);
+        pvtFillBelowTerrain(options, surface, inside);
     }
     if (status == PVT_OK && options->enclosed >= 0) {
         status = pvtFillEnclosed(context, options->enclosed, inside);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Landscapes: what lies below the lowest surface of each column is inside.
+// Landscapes: what lies below the lowest surface of each column is inside, down to the lowest of
+// all or farther.
 #include "outside.h"
 
 #include "bit_grid.h"
@@ -55,18 +56,20 @@ static void FillColumns(const pvtBitGrid* surface, size_t first, size_t step, co
     }
 }
 
-void pvtFillBelowTerrain(const pvtBitGrid* surface, pvtAxis up, pvtBitGrid* inside)
+void pvtFillBelowTerrain(const pvtSolidOptions* options, const pvtBitGrid* surface,
+                         pvtBitGrid* inside)
 {
     pvtGridBox box;
     if (!pvtBitGrid_FindBounds(surface, &box)) {
         return;
     }
-    const int range[2] = {box.lower[up], box.upper[up]};
-    if (up == PVT_AXIS_X) {
+    const int bottom = box.lower[options->up] - options->below;
+    const int range[2] = {bottom > 0 ? bottom : 0, box.upper[options->up]};
+    if (options->up == PVT_AXIS_X) {
         FillRows(surface, range[0], inside);
         return;
     }
-    const ColumnLayout layout = GetColumnLayout(surface, up);
+    const ColumnLayout layout = GetColumnLayout(surface, options->up);
     for (size_t i = 0; i < layout.across * surface->wordsPerRow; ++i) {
         FillColumns(surface, GetColumnStart(&layout, surface, i), layout.step, range, inside);
     }

@@ -231,31 +231,39 @@ static void MakeHills(pvtContext* context, pvtMesh* mesh)
 }
 
 // Below its edge a landscape hides nothing, though all of that counts as inside: nothing is gained
-// there. With that as a goal precision is 95.0 %.
+// there. With that as a goal precision is 95.0 % within a tolerance. Strictly inside there is room
+// below all of it: with holes where valleys are lowest recall is 3.4 %.
 static void a_landscape_is_covered_where_it_hides_something(void** state)
 {
     (void)state;
+    static const struct {
+        double tolerance, precision, recall;
+    } cases[] = {{1.0, 0.965, 0.985}, {0.0, 0.945, 0.9}};
     pvtContext* context = CreateTestContext(2);
     pvtMesh hills;
     MakeHills(context, &hills);
-    pvtBuildOptions options = GetQuickOptions();
-    options.terrain = true;
-    options.resolution = 64;
-    options.tolerance = (pvtLength){1.0, true};
-    options.budget = 24;
-    options.views.count = 64;
-    pvtOccluder occluder;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, NULL));
-    pvtEvaluateOptions judge = pvtDefaultEvaluateOptions();
-    judge.quads = 4000;
-    pvtEvaluation evaluation;
-    CHECK_OK(context,
-             pvtEvaluateOccluders(context, &judge, &hills, &occluder.mesh, 1, &evaluation));
-    const pvtQuadScore uniform = evaluation.occluders[0].uniform;
-    assert_true(uniform.precision > 0.965);
-    assert_true(uniform.recall > 0.985);
-    pvtEvaluation_Free(context, &evaluation);
-    pvtOccluder_Free(context, &occluder);
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) {
+        pvtBuildOptions options = GetQuickOptions();
+        options.terrain = true;
+        options.resolution = 64;
+        options.tolerance = (pvtLength){cases[c].tolerance, true};
+        options.budget = 24;
+        options.views.count = 64;
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
+        assert_true(stats.outside == 0 || cases[c].tolerance > 0.0);
+        pvtEvaluateOptions judge = pvtDefaultEvaluateOptions();
+        judge.quads = 4000;
+        pvtEvaluation evaluation;
+        CHECK_OK(context,
+                 pvtEvaluateOccluders(context, &judge, &hills, &occluder.mesh, 1, &evaluation));
+        const pvtQuadScore uniform = evaluation.occluders[0].uniform;
+        assert_true(uniform.precision > cases[c].precision);
+        assert_true(uniform.recall > cases[c].recall);
+        pvtEvaluation_Free(context, &evaluation);
+        pvtOccluder_Free(context, &occluder);
+    }
     pvtMesh_Free(context, &hills);
     DestroyTestContext(context);
 }

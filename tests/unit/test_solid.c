@@ -452,9 +452,11 @@ static void terrain_fills_below_the_lowest_surface_of_each_column(void** state)
         }
         pvtSolidOptions options = pvtDefaultSolidOptions();
         options.terrain = true;
+        options.below = 2 * up;
         options.up = (pvtAxis)up;
         pvtSolid solid = FillWith(context, &surface, options);
         uint64_t expected = 0;
+        bottom -= options.below;
         for (int i = 0; i < 100; ++i) {
             const int height = lowest[i % 10][i / 10];
             expected += height > bottom ? (uint64_t)(height - bottom) : 0;
@@ -558,13 +560,14 @@ static void options_out_of_range_are_refused(void** state)
     pvtBitGrid surface;
     MakeOpenBox(context, 2, 0, &surface);
     const pvtSolidOptions good = pvtDefaultSolidOptions();
-    pvtSolidOptions bad[5] = {good, good, good, good, good};
+    pvtSolidOptions bad[6] = {good, good, good, good, good, good};
     bad[0].smallestHole = -0.1;
     bad[1].smallestHole = NAN;
     bad[2].enclosed = 26;
     bad[3].enclosed = -2;
     bad[4].up = (pvtAxis)3;
-    for (int i = 0; i < 5; ++i) {
+    bad[5].below = -1;
+    for (int i = 0; i < 6; ++i) {
         pvtSolid solid;
         assert_int_equal(pvtFillSolid(context, &bad[i], &surface, &solid), PVT_INVALID_ARGUMENT);
         assert_null(solid.inside.words);
