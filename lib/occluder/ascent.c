@@ -12,6 +12,7 @@
 // (settle.c, polish.c).
 #include "ascent.h"
 #include "ascent_state.h"
+#include "occluder.h"
 
 #include "base/context.h"
 #include "base/vector.h"
@@ -83,12 +84,11 @@ static pvtStatus TakeTriangles(pvtContext* context, const pvtOccluder* occluder,
     }
     pvtAscent_AddCorners(ascent, &mesh);
     const pvtSheetSet* sheets = ascent->options->sheets;
-    const size_t* starts = occluder->loops.starts;
     size_t triangle = 0;
     for (size_t p = 0; p < occluder->loops.loopCount; ++p) {
         const bool isFixed =
             sheets != NULL && pvtSheetSet_Find(sheets, &occluder->planes[p]) != NULL;
-        const size_t end = triangle + (starts[p + 1] - starts[p] - 2);
+        const size_t end = triangle + pvtCountPolygonTriangles(&occluder->loops, p);
         for (; triangle < end; ++triangle) {
             const uint32_t* corners = mesh.indices + 3 * triangle;
             pvtTriangleSet_AddTriangle(&ascent->set, corners, (int32_t)p);

@@ -2,6 +2,7 @@
 // When triangles leave their planes, and for which views.
 #include "bend.h"
 #include "facets.h"
+#include "occluder.h"
 #include "steps.h"
 
 #include "base/context.h"
@@ -68,7 +69,7 @@ static bool IsFlatInside(const pvtBuild* build)
     size_t triangle = 0;
     for (size_t p = 0; p < flat->loops.loopCount; ++p) {
         const bool isOnSheet = pvtSheetSet_Find(&build->sheets, &flat->planes[p]) != NULL;
-        const size_t end = triangle + (flat->loops.starts[p + 1] - flat->loops.starts[p] - 2);
+        const size_t end = triangle + pvtCountPolygonTriangles(&flat->loops, p);
         for (; triangle < end; ++triangle) {
             pvtVec3 corners[3];
             pvtGetGridTriangle(&flat->frame, &flat->mesh, triangle, corners);

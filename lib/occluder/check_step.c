@@ -11,6 +11,12 @@
 #include <inttypes.h>
 #include <math.h>
 
+// Of messages: what is known of the storage, and what helps.
+#define STORAGE "coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g"
+#define REMEDY                                                                                     \
+    "bring the mesh nearer to its origin, or try --separate, which keeps each mesh's own "         \
+    "coordinates"
+
 static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
 static const double COARSE_STEP = 0.25;     // [vx]
 static const double SAFE_SHARE = 0.8; // of the voxels: with more, that of the measure is not small
@@ -81,10 +87,8 @@ static pvtStatus FailEmpty(pvtContext* context, const pvtBuild* build)
     const double voxel = build->stats.voxelSize;
     return storage.step > COARSE_STEP * voxel
                ? pvtFail(context, PVT_NOTHING_INSIDE,
-                         "coordinates as large as %g are stored in steps of %.2g, and voxels are "
-                         "%.2g, so that no triangle can lie inside: bring the mesh nearer to its "
-                         "origin, or try --separate, which keeps each mesh's own coordinates",
-                         storage.farthest, storage.step, voxel)
+                         STORAGE ", so that no triangle can lie inside: " REMEDY, storage.farthest,
+                         storage.step, voxel)
                : pvtFailNothingInside(context, build);
 }
 
@@ -96,16 +100,13 @@ static void WarnOfStorage(pvtContext* context, const pvtBuild* build)
     if (stats->outside > 0) {
         pvtLog(context, PVT_LOG_WARNING,
                "the check found %" PRIu64 " voxel%s in which the occluder reaches where it may "
-               "not; coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g: "
-               "bring the mesh nearer to its origin, or try --separate, which keeps each mesh's "
-               "own coordinates",
+               "not; " STORAGE ": " REMEDY,
                stats->outside, stats->outside == 1 ? "" : "s", storage.farthest, storage.step,
                stats->voxelSize);
     } else if (storage.step > COARSE_STEP * stats->voxelSize) {
         pvtLog(context, PVT_LOG_WARNING,
-               "coordinates as large as %g are stored in steps of %.2g, and voxels are %.2g, so "
-               "that corners lie where they can rather than where they hide most: bring the mesh "
-               "nearer to its origin, or try --separate, which keeps each mesh's own coordinates",
+               STORAGE
+               ", so that corners lie where they can rather than where they hide most: " REMEDY,
                storage.farthest, storage.step, stats->voxelSize);
     }
 }

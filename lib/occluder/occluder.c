@@ -61,7 +61,7 @@ pvtStatus pvtMakeOccluderMesh(pvtContext* context, pvtOccluder* occluder)
     const pvtLoopSet* loops = &occluder->loops;
     pvtMesh mesh = {.positionCount = loops->pointCount};
     for (size_t loop = 0; loop < loops->loopCount; ++loop) {
-        mesh.triangleCount += loops->starts[loop + 1] - loops->starts[loop] - 2;
+        mesh.triangleCount += pvtCountPolygonTriangles(loops, loop);
     }
     mesh.positions = pvtAllocate(context, mesh.positionCount, sizeof *mesh.positions);
     mesh.indices = pvtAllocate(context, 3 * mesh.triangleCount, sizeof *mesh.indices);
@@ -76,7 +76,7 @@ pvtStatus pvtMakeOccluderMesh(pvtContext* context, pvtOccluder* occluder)
                                           RoundCoordinate(point.z)};
         }
         status = TriangulateLoop(context, occluder, loop, mesh.indices + 3 * triangle);
-        triangle += loops->starts[loop + 1] - loops->starts[loop] - 2;
+        triangle += pvtCountPolygonTriangles(loops, loop);
     }
     if (status != PVT_OK) {
         pvtMesh_Free(context, &mesh);

@@ -13,6 +13,12 @@ pvtStatus pvtAllocateOccluder(pvtContext* context, const pvtGridFrame* frame, si
 void pvtAddOccluderPolygon(pvtOccluder* occluder, const pvtPlane* plane, const pvtPoint2* points,
                            size_t count);
 
+/// Of one polygon.
+static inline size_t pvtCountPolygonTriangles(const pvtLoopSet* loops, size_t loop)
+{
+    return loops->starts[loop + 1] - loops->starts[loop] - 2;
+}
+
 /// Triangulates the polygons into occluder->mesh, instead of what was there.
 pvtStatus pvtMakeOccluderMesh(pvtContext* context, pvtOccluder* occluder);
 

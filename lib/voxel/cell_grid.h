@@ -10,13 +10,18 @@
 /// All cells clear. Takes over `voxels`, whose frame it has; both are empty on failure.
 pvtStatus pvtCreateCellGrid(pvtContext* context, pvtBitGrid* voxels, pvtCellGrid* grid);
 
-/// So many voxels with a word come before this one.
+/// So many voxels with a word come before this one; `bits` and `ranks` are those of its row.
+static inline size_t pvtRankInRow(const uint64_t* bits, const uint32_t* ranks, int x)
+{
+    const size_t word = (size_t)x / 64;
+    const uint64_t before = (UINT64_C(1) << (x % 64)) - 1;
+    return ranks[word] + (size_t)pvtCountBits(bits[word] & before);
+}
+
 static inline size_t pvtCellGrid_Rank(const pvtCellGrid* grid, int x, int y, int z)
 {
-    const size_t word =
-        pvtGetRowIndex(&grid->voxels, y, z) * grid->voxels.wordsPerRow + (size_t)x / 64;
-    const uint64_t before = (UINT64_C(1) << (x % 64)) - 1;
-    return grid->ranks[word] + (size_t)pvtCountBits(grid->voxels.words[word] & before);
+    const size_t row = pvtGetRowIndex(&grid->voxels, y, z) * grid->voxels.wordsPerRow;
+    return pvtRankInRow(grid->voxels.words + row, grid->ranks + row, x);
 }
 
 /// Place of a voxel's word in `cells`; PVT_NO_CELLS if it has none.

@@ -167,10 +167,7 @@ static void KeepCells(void* task, const pvtShellRow rows[PVT_SHELL_ROWS], int x,
     const pvtCellGrid* cells = judge->cells;
     const uint64_t* bits = FindBits(judge, rows, &cells->voxels);
     if (pvtGetBit(bits, (size_t)x)) {
-        const uint64_t before = (UINT64_C(1) << (x % 64)) - 1;
-        const uint64_t* word = bits + x / 64;
-        const size_t kept =
-            cells->ranks[word - cells->voxels.words] + (size_t)pvtCountBits(*word & before);
+        const size_t kept = pvtRankInRow(bits, cells->ranks + (bits - cells->voxels.words), x);
         cells->cells[kept] = judge->allowed[place];
         cells->border[kept] = GetBorder(judge, place);
     }

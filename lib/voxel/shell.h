@@ -84,12 +84,9 @@ PVT_IN_CLONES uint32_t pvtShellRow_Find(const pvtShellRow* row, int x)
     if (x < 0 || x >= row->size) {
         return PVT_OUTSIDE;
     }
-    const size_t word = (size_t)x / 64;
-    const uint64_t bit = UINT64_C(1) << (x % 64);
-    return (row->touched[word] & bit) != 0
-               ? row->ranks[word] + (uint32_t)pvtCountBits(row->touched[word] & (bit - 1))
-           : (row->inside[word] & bit) != 0 ? PVT_INSIDE
-                                            : PVT_OUTSIDE;
+    return pvtGetBit(row->touched, (size_t)x)  ? (uint32_t)pvtRankInRow(row->touched, row->ranks, x)
+           : pvtGetBit(row->inside, (size_t)x) ? PVT_INSIDE
+                                               : PVT_OUTSIDE;
 }
 
 PVT_IN_CLONES uint32_t pvtFindBeside(const pvtShellRow rows[PVT_SHELL_ROWS], int x, int side)

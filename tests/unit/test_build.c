@@ -157,17 +157,15 @@ static void an_occluder_never_hides_more_than_the_solid_at_any_resolution(void**
     DestroyTestContext(context);
 }
 
-static pvtQuadScore ScoreOccluder(pvtContext* context, const pvtMesh* mesh, int resolution,
-                                  int budget, double tolerance)
+static pvtQuadScore ScoreBuild(pvtContext* context, const pvtBuildOptions* options, int views,
+                               const pvtMesh* mesh)
 {
-    pvtBuildOptions options = GetQuickOptions();
-    options.resolution = resolution;
-    options.budget = budget;
-    options.tolerance = (pvtLength){tolerance, true};
     pvtOccluder occluder;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, mesh, &occluder, NULL));
+    pvtBuildStats stats;
+    CHECK_OK(context, pvtBuildOccluder(context, options, mesh, &occluder, &stats));
+    assert_true(stats.outside == 0 || options->tolerance.value > 0.0);
     pvtEvaluateOptions evaluate = pvtDefaultEvaluateOptions();
-    evaluate.views = 32;
+    evaluate.views = views;
     evaluate.quads = 4000;
     pvtEvaluation evaluation;
     CHECK_OK(context,
@@ -176,6 +174,16 @@ static pvtQuadScore ScoreOccluder(pvtContext* context, const pvtMesh* mesh, int 
     pvtEvaluation_Free(context, &evaluation);
     pvtOccluder_Free(context, &occluder);
     return score;
+}
+
+static pvtQuadScore ScoreOccluder(pvtContext* context, const pvtMesh* mesh, int resolution,
+                                  int budget, double tolerance)
+{
+    pvtBuildOptions options = GetQuickOptions();
+    options.resolution = resolution;
+    options.budget = budget;
+    options.tolerance = (pvtLength){tolerance, true};
+    return ScoreBuild(context, &options, 32, mesh);
 }
 
 // Sticking out is allowed, but not worth anything by itself.
@@ -211,7 +219,6 @@ static void a_wall_is_covered_within_a_tolerance(void** state)
     DestroyTestContext(context);
 }
 
-// Three voxels of wall, curved both ways: triangles pushed off its one side come through the other.
 // Hills over 8 by 8, 24 by 24 quads.
 static void MakeHills(pvtContext* context, pvtMesh* mesh)
 {
@@ -249,25 +256,15 @@ static void a_landscape_is_covered_where_it_hides_something(void** state)
         options.tolerance = (pvtLength){cases[c].tolerance, true};
         options.budget = 24;
         options.views.count = 64;
-        pvtOccluder occluder;
-        pvtBuildStats stats;
-        CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
-        assert_true(stats.outside == 0 || cases[c].tolerance > 0.0);
-        pvtEvaluateOptions judge = pvtDefaultEvaluateOptions();
-        judge.quads = 4000;
-        pvtEvaluation evaluation;
-        CHECK_OK(context,
-                 pvtEvaluateOccluders(context, &judge, &hills, &occluder.mesh, 1, &evaluation));
-        const pvtQuadScore uniform = evaluation.occluders[0].uniform;
+        const pvtQuadScore uniform = ScoreBuild(context, &options, 256, &hills);
         assert_true(uniform.precision > cases[c].precision);
         assert_true(uniform.recall > cases[c].recall);
-        pvtEvaluation_Free(context, &evaluation);
-        pvtOccluder_Free(context, &occluder);
     }
     pvtMesh_Free(context, &hills);
     DestroyTestContext(context);
 }
 
+// Three voxels of wall, curved both ways: triangles pushed off its one side come through the other.
 static void triangles_find_their_places_within_a_shell(void** state)
 {
     (void)state;

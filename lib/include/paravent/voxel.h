@@ -55,13 +55,13 @@ typedef struct pvtSolidOptions {
     bool ground;         ///< the plane below the surface's bounds counts as closed: a mirror, below
                          ///< which everything repeats, and nothing is inside; default false
     bool terrain;        ///< all below the lowest surface of a column is inside; default false
+    bool strict;  ///< outside is what a walk of 2 voxels reaches from where a ball comes, too:
+                  ///< no fillets stick out of shallow creases; default false
     int below;    ///< [vx] ≥ 0, for terrain: so far below the surface's bounds is inside, too,
                   ///< as far as the grid goes; default 0
     pvtAxis up;   ///< for ground and terrain; default y
     int enclosed; ///< 0 to 25 of the 26 directions: an outside voxel from which at most this
                   ///< many escape counts as inside; −1: off; default −1
-    bool strict;  ///< outside is what a walk of 2 voxels reaches from where a ball comes, too:
-                  ///< no fillets stick out of shallow creases; default false
 } pvtSolidOptions;
 
 /// What would fill a solid that came out hollow; all 0 when it is not, or when nothing would.
