@@ -10,6 +10,7 @@ typedef struct pvtAscentOptions {
     const pvtViewOptions* views;  ///< how they are spread, or a list
     const pvtBitGrid* goal;       ///< what there is to hide; borrowed
     const pvtCellGrid* goalCells; ///< parts of other voxels; borrowed; may be null
+    bool keepsToGoal; ///< the inside reaches farther, but there is nothing that may be hidden
     const pvtInsideTest* inside;
     const pvtMesh* mesh;       ///< what the goal is of, another start; borrowed; may be null
     const pvtMesh* flat;       ///< an occluder for this budget, another; borrowed; may be null

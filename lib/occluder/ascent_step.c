@@ -59,15 +59,15 @@ static pvtStatus MakeGoalWithin(pvtContext* context, const pvtBuild* build, Goal
 static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal)
 {
     *goal = (Goal){0};
-    if (build->stats.tolerance == 0.0) {
-        goal->voxels = build->hiding.words != NULL ? &build->hiding : &build->allowed;
-        goal->cells = pvtGetInterior(build).cells;
-        return PVT_OK;
-    }
     // What is below a landscape is inside because somebody says so. From the side it is seen, below
     // the landscape's edge, and hides what the landscape does not.
     if (build->options->terrain) {
         goal->voxels = &build->solid.surface;
+        return PVT_OK;
+    }
+    if (build->stats.tolerance == 0.0) {
+        goal->voxels = build->hiding.words != NULL ? &build->hiding : &build->allowed;
+        goal->cells = pvtGetInterior(build).cells;
         return PVT_OK;
     }
     if (pvtGetLongestSide(build->solid.inside.frame.size) > FINEST_GOAL) {
@@ -94,6 +94,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .views = &views,
         .goal = goal.voxels,
         .goalCells = goal.cells,
+        .keepsToGoal = build->options->terrain,
         .inside = &build->inside,
         .mesh = build->mesh,
         .flat = build->stats.tolerance > 0.0 ? &build->flat.mesh : NULL,

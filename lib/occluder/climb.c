@@ -94,6 +94,7 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
                                  .count = wantsEdges ? PVT_MOST_BATCH : ascent->options->batch,
                                  .softness = ascent->softness,
                                  .inset = PVT_ASCENT_INSET,
+                                 .keepsToGoal = ascent->options->keepsToGoal,
                                  .wantsEdges = wantsEdges};
     pvtPullCorners(context, &pull, &ascent->puller);
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
@@ -129,6 +130,7 @@ static double Judge(pvtContext* context, pvtAscent* ascent)
                                      .count = (int)(left < PVT_MOST_BATCH ? left : PVT_MOST_BATCH),
                                      .softness = JUDGE_SOFTNESS,
                                      .inset = PVT_ASCENT_INSET,
+                                     .keepsToGoal = ascent->options->keepsToGoal,
                                      .wantsNoPulls = true};
         pvtPullCorners(context, &pull, &ascent->puller);
         sum += ascent->puller.share * pull.count;

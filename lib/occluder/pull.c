@@ -8,6 +8,7 @@
 // through Edge Sampling, 2018). One such pull costs as much as one evaluation, and moves all
 // corners at once.
 #include "pull.h"
+#include "beyond.h"
 
 #include "base/context.h"
 #include "base/vectors.h"
@@ -105,6 +106,7 @@ static void SumRows(float (*restrict values)[STRIDE])
 typedef struct Lack {
     uint32_t missing[PADDED][LINKS]; // pixel x is bit x + 32 of row y + 1
     float values[ENDS + 1][STRIDE];  // of cell (x, y) at [y + 1][x + 1]
+    bool hasLosses;                  // values below 0, which are rounding otherwise
 } Lack;
 
 static void PadMissing(const pvtSightMask* missing, Lack* lack)
@@ -206,7 +208,7 @@ static bool WeighEdge(const float a[2], const float b[2], const float across[2],
     worth->ends[0] = sums[0] * pixels;
     worth->ends[1] = sums[1] * pixels;
     worth->middle = sums[2] * pixels;
-    return worth->ends[0] + worth->ends[1] > 0.0F;
+    return worth->ends[0] + worth->ends[1] > 0.0F || lack->hasLosses;
 }
 
 // Edges between two triangles that lie on both sides of it cover what is behind each other.
@@ -239,6 +241,31 @@ static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2], con
     }
 }
 
+// Pixels beyond the goal are as missing ones that are worth less than nothing.
+static void LoseBeyond(const pvtSightMask* goal, pvtSightMask* missing, Lack* lack)
+{
+    pvtSightMask beyond;
+    pvtFindBeyond(goal, &beyond);
+    pvtPunishBeyond(&beyond, lack->values);
+    for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
+        for (int y = 0; y < SIZE; ++y) {
+            missing->words[half][y] |= beyond.words[half][y];
+        }
+    }
+}
+
+static double SumWorths(const pvtPuller* puller, const pvtSight* sight, const pvtSightMask* covered,
+                        const pvtSightMask* missing)
+{
+    const double worth = pvtSumWorths(puller->sights, sight, missing, puller->options.softness);
+    if (!puller->options.keepsToGoal) {
+        return worth;
+    }
+    pvtSightMask beyond;
+    pvtFindBeyond(&sight->goal, &beyond);
+    return worth - (double)sight->quadCount * pvtGetCostBeyond(&sight->goal, &beyond, covered);
+}
+
 static void PullSights(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
@@ -254,12 +281,15 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
             pvtDrawSightTriangle(set, places, t, puller->options.inset, &covered);
         }
         pvtFindMissing(&sight->goal, &covered, &missing);
+        lack.hasLosses = puller->options.keepsToGoal;
         puller->most[b] = (double)sight->quadCount;
         if (puller->options.wantsNoPulls) {
-            puller->worth[b] =
-                pvtSumWorths(puller->sights, sight, &missing, puller->options.softness);
+            puller->worth[b] = SumWorths(puller, sight, &covered, &missing);
         } else {
             puller->worth[b] = WeighCells(puller, sight, &missing, lack.values);
+            if (puller->options.keepsToGoal) {
+                LoseBeyond(&sight->goal, &missing, &lack);
+            }
             PadMissing(&missing, &lack);
             PullEdges(puller, b, places, &lack);
         }

@@ -18,6 +18,7 @@ typedef struct pvtPullOptions {
     int count;      ///< at most PVT_MOST_BATCH
     float softness; ///< [px]
     float inset; ///< [px] that open edges are drawn short of, so that no gap is too narrow to see
+    bool keepsToGoal; ///< what is covered beyond the goal counts against it
     bool wantsEdges;
     bool wantsNoPulls; ///< `share` alone
 } pvtPullOptions;

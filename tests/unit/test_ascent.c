@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "occluder/ascent.h"
 #include "occluder/ascent_state.h"
+#include "occluder/beyond.h"
 #include "occluder/contacts.h"
 #include "occluder/crossing.h"
 #include "occluder/pull.h"
@@ -179,6 +180,94 @@ static void following_the_pull_hides_more(void** state)
             }
         }
     }
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
+static bool HasPixel(const pvtSightMask* mask, int x, int y)
+{
+    return x >= 0 && y >= 0 && x < PVT_SIGHT_SIZE && y < PVT_SIGHT_SIZE &&
+           pvtGetBit(&mask->words[x / 64][y], (size_t)x % 64);
+}
+
+static int CountAround(const pvtSightMask* mask, int x, int y, int width)
+{
+    int count = 0;
+    for (int i = 0; i < width * width; ++i) {
+        count += HasPixel(mask, x + i % width, y + i / width) ? 1 : 0;
+    }
+    return count;
+}
+
+static void cells_away_from_the_goal_are_beyond_it(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 1, RADIUS, &lesson);
+    pvtSightMask goals[2] = {lesson.sights.sights[0].goal, {{{0}}}};
+    pvtRandom random = pvtMakeRandom(8, 3);
+    for (int i = 0; i < 90; ++i) {
+        const size_t x = pvtRandom_Below(&random, PVT_SIGHT_SIZE);
+        pvtSetBit(&goals[1].words[x / 64][pvtRandom_Below(&random, PVT_SIGHT_SIZE)], x % 64);
+    }
+    for (int g = 0; g < 2; ++g) {
+        pvtSightMask beyond;
+        pvtFindBeyond(&goals[g], &beyond);
+        int all = 0, out = 0;
+        for (int i = 0; i < PVT_SIGHT_CELLS * PVT_SIGHT_CELLS; ++i) {
+            const int x = 2 * (i % PVT_SIGHT_CELLS), y = 2 * (i / PVT_SIGHT_CELLS);
+            const bool isBeyond = CountAround(&goals[g], x - 1, y - 1, 4) == 0;
+            assert_int_equal(CountAround(&beyond, x, y, 2), isBeyond ? 4 : 0);
+            out += isBeyond ? 4 : 0;
+            all += CountAround(&goals[g], x, y, 2);
+        }
+        assert_true(out > 0 && all > 0);
+        CHECK_NEAR(pvtGetCostBeyond(&goals[g], &beyond, &beyond), 20.0 * out / all, 1e-9);
+        assert_true(pvtGetCostBeyond(&goals[g], &beyond, &goals[g]) == 0.0);
+    }
+    FreeLesson(context, &lesson);
+    DestroyTestContext(context);
+}
+
+// It hides all of the ball, so that nothing else pulls.
+static void what_reaches_beyond_the_goal_is_pulled_back(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Lesson lesson;
+    MakeLesson(context, 1, RADIUS, &lesson);
+    for (int k = 0; k < 3; ++k) {
+        const float angle = 2.1F * (float)k, reach = 3.0F * RADIUS;
+        lesson.set.corners[k][0] = CENTER;
+        lesson.set.corners[k][1] = CENTER + reach * cosf(angle);
+        lesson.set.corners[k][2] = CENTER + reach * sinf(angle);
+    }
+    for (size_t s = 0; s < lesson.sights.count; ++s) {
+        // From the side it is an edge, and hides little.
+        const pvtSight* sight = &lesson.sights.sights[s];
+        const float* r = sight->right;
+        const float* u = sight->up;
+        const float facing = fabsf(r[1] * u[2] - r[2] * u[1]) * sight->pixelSize * sight->pixelSize;
+        lesson.sights.sights[s].weight *= facing > 0.9F ? 1.0F : 0.0F;
+    }
+    pvtPullOptions options = {.count = 64, .softness = 20.0F};
+    pvtPullCorners(context, &options, &lesson.puller);
+    assert_true(lesson.puller.share > 0.999);
+    for (int c = 0; c < 3; ++c) {
+        assert_true(lesson.puller.corners[c][1] == 0.0F && lesson.puller.corners[c][2] == 0.0F);
+    }
+    options.keepsToGoal = true;
+    pvtPullCorners(context, &options, &lesson.puller);
+    assert_true(lesson.puller.share > 0.999); // what edges are pulled by is as without
+    for (int c = 0; c < 3; ++c) {
+        const float* pull = lesson.puller.corners[c];
+        const float* corner = lesson.set.corners[c];
+        assert_true(pull[1] * (corner[1] - CENTER) + pull[2] * (corner[2] - CENTER) < 0.0F);
+    }
+    options.wantsNoPulls = true;
+    pvtPullCorners(context, &options, &lesson.puller);
+    assert_true(lesson.puller.share < 0.0);
     FreeLesson(context, &lesson);
     DestroyTestContext(context);
 }
@@ -572,6 +661,8 @@ int main(void)
         cmocka_unit_test(the_field_of_a_ball_is_its_depth),
         cmocka_unit_test(edges_are_shared_by_pairs_of_triangles),
         cmocka_unit_test(following_the_pull_hides_more),
+        cmocka_unit_test(cells_away_from_the_goal_are_beyond_it),
+        cmocka_unit_test(what_reaches_beyond_the_goal_is_pulled_back),
         cmocka_unit_test(what_another_covers_as_well_is_worth_nothing_alone),
         cmocka_unit_test(one_look_tells_less_than_all),
         cmocka_unit_test(a_share_is_the_same_with_pulls_and_without),

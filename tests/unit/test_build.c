@@ -237,15 +237,15 @@ static void MakeHills(pvtContext* context, pvtMesh* mesh)
     CHECK_OK(context, pvtCreateMesh(context, positions, CORNERS, indices, count / 3, mesh));
 }
 
-// Below its edge a landscape hides nothing, though all of that counts as inside: nothing is gained
-// there. With that as a goal precision is 95.0 % within a tolerance. Strictly inside there is room
-// below all of it: with holes where valleys are lowest recall is 3.4 %.
+// Below its edge a landscape hides nothing, though all of that counts as inside: what is seen there
+// counts against an occluder. Otherwise precision is 96.9 % within a tolerance, and 95.0 % strictly
+// inside. There it has room below all of it: with holes where valleys are lowest recall is 3.4 %.
 static void a_landscape_is_covered_where_it_hides_something(void** state)
 {
     (void)state;
     static const struct {
         double tolerance, precision, recall;
-    } cases[] = {{1.0, 0.965, 0.985}, {0.0, 0.945, 0.9}};
+    } cases[] = {{1.0, 0.99, 0.96}, {0.0, 0.985, 0.7}};
     pvtContext* context = CreateTestContext(2);
     pvtMesh hills;
     MakeHills(context, &hills);
@@ -257,6 +257,7 @@ static void a_landscape_is_covered_where_it_hides_something(void** state)
         options.budget = 24;
         options.views.count = 64;
         const pvtQuadScore uniform = ScoreBuild(context, &options, 256, &hills);
+        fprintf(stderr, "P %f R %f\n", uniform.precision, uniform.recall);
         assert_true(uniform.precision > cases[c].precision);
         assert_true(uniform.recall > cases[c].recall);
     }
