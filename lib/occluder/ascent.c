@@ -7,7 +7,8 @@
 // other views, there is nothing to gain from the pixels of any of them.
 //
 // More triangles than the budget has start, and the least useful are taken away while the others
-// move on: those that are left had the choice of their places (climb.c, restructure.c). A mesh that
+// move on: those that are left had the choice of their places (climb.c, restructure.c). What the
+// climbs from several starts end at is united, and thinned out in the same way. A mesh that
 // has climbed is inside but for a fraction of a voxel, and settles until the exact test agrees
 // (settle.c, polish.c).
 #include "ascent.h"
@@ -64,6 +65,7 @@ static void FreeAscent(pvtContext* context, pvtAscent* ascent)
     pvtTriangleSet_Free(context, &ascent->set);
     pvtTriangleSet_Free(context, &ascent->start);
     pvtTriangleSet_Free(context, &ascent->best);
+    pvtTriangleSet_Free(context, &ascent->rival);
     pvtField_Free(context, &ascent->field);
     pvtSightSet_Free(context, &ascent->sights);
     pvtPuller_Free(context, &ascent->puller);
@@ -74,41 +76,73 @@ static void FreeAscent(pvtContext* context, pvtAscent* ascent)
     pvtRelease(context, ascent);
 }
 
-// Triangles in the order of their polygons, as pvtMakeOccluderMesh left them.
-static pvtStatus TakeTriangles(pvtContext* context, const pvtOccluder* occluder, pvtAscent* ascent)
+static size_t GetFirstPolygon(const pvtAscent* ascent, int start)
 {
-    pvtMesh mesh;
-    const pvtStatus status = pvtWeldMesh(context, &occluder->mesh, &mesh);
-    if (status != PVT_OK) {
-        return status;
-    }
-    pvtAscent_AddCorners(ascent, &mesh);
+    return start > 0 ? ascent->options->startEnds[start - 1] : 0;
+}
+
+// Triangles in the order of their polygons, as pvtMakeOccluderMesh left them.
+static void AddTriangles(const pvtMesh* mesh, int start, pvtAscent* ascent)
+{
+    const pvtOccluder* occluder = ascent->occluder;
     const pvtSheetSet* sheets = ascent->options->sheets;
     size_t triangle = 0;
-    for (size_t p = 0; p < occluder->loops.loopCount; ++p) {
+    for (size_t p = GetFirstPolygon(ascent, start); p < ascent->options->startEnds[start]; ++p) {
         const bool isFixed =
             sheets != NULL && pvtSheetSet_Find(sheets, &occluder->planes[p]) != NULL;
         const size_t end = triangle + pvtCountPolygonTriangles(&occluder->loops, p);
         for (; triangle < end; ++triangle) {
-            const uint32_t* corners = mesh.indices + 3 * triangle;
+            const uint32_t* corners = mesh->indices + 3 * triangle;
             pvtTriangleSet_AddTriangle(&ascent->set, corners, (int32_t)p);
             for (int k = 0; k < 3 && isFixed; ++k) {
                 ascent->set.isFixed[corners[k]] = true;
             }
         }
     }
-    assert(triangle == mesh.triangleCount);
-    pvtMesh_Free(context, &mesh);
+    assert(triangle == mesh->triangleCount);
+}
+
+// Its triangles lie together, as its polygons do.
+static pvtMesh GetStartMesh(const pvtAscent* ascent, int start)
+{
+    const size_t firstPolygon = GetFirstPolygon(ascent, start);
+    const size_t endPolygon = ascent->options->startEnds[start];
+    pvtMesh mesh = ascent->occluder->mesh;
+    for (size_t p = 0; p < firstPolygon; ++p) {
+        mesh.indices += 3 * pvtCountPolygonTriangles(&ascent->occluder->loops, p);
+    }
+    mesh.triangleCount = 0;
+    for (size_t p = firstPolygon; p < endPolygon; ++p) {
+        mesh.triangleCount += pvtCountPolygonTriangles(&ascent->occluder->loops, p);
+    }
+    return mesh;
+}
+
+pvtStatus pvtAscent_TakeStart(pvtContext* context, pvtAscent* ascent, int start)
+{
+    const pvtMesh own = GetStartMesh(ascent, start);
+    pvtMesh welded;
+    const pvtStatus status = pvtWeldMesh(context, &own, &welded);
+    if (status != PVT_OK) {
+        return status;
+    }
+    ascent->set.cornerCount = ascent->set.triangleCount = 0;
+    pvtAscent_AddCorners(ascent, &welded);
+    AddTriangles(&welded, start, ascent);
+    pvtTriangleSet_FindEdges(&ascent->set);
+    pvtMesh_Free(context, &welded);
     return PVT_OK;
 }
 
-static pvtStatus MakeRoom(pvtContext* context, const pvtOccluder* occluder, pvtAscent* ascent)
+static pvtStatus MakeRoom(pvtContext* context, pvtAscent* ascent)
 {
-    const int start = (int)occluder->mesh.triangleCount;
-    const int grown = 2 * ascent->options->budget + 8;
-    const int triangles = start > grown ? start : grown;
+    int triangles = 2 * ascent->options->budget + 8;
+    for (int s = 0; s < ascent->options->startCount; ++s) {
+        const int start = (int)GetStartMesh(ascent, s).triangleCount;
+        triangles = start > triangles ? start : triangles;
+    }
     const size_t corners = 3 * (size_t)triangles;
-    pvtTriangleSet* const sets[] = {&ascent->set, &ascent->start, &ascent->best};
+    pvtTriangleSet* const sets[] = {&ascent->set, &ascent->start, &ascent->best, &ascent->rival};
     pvtStatus status = PVT_OK;
     for (size_t i = 0; i < sizeof sets / sizeof *sets && status == PVT_OK; ++i) {
         status = pvtCreateTriangleSet(context, (int)corners, triangles, sets[i]);
@@ -140,11 +174,11 @@ static pvtStatus MakeSights(pvtContext* context, pvtAscent* ascent)
     return status;
 }
 
-static pvtStatus Prepare(pvtContext* context, const pvtOccluder* occluder, pvtAscent* ascent)
+static pvtStatus Prepare(pvtContext* context, pvtAscent* ascent)
 {
-    pvtStatus status = MakeRoom(context, occluder, ascent);
+    pvtStatus status = MakeRoom(context, ascent);
     if (status == PVT_OK) {
-        status = TakeTriangles(context, occluder, ascent);
+        status = pvtAscent_TakeStart(context, ascent, 0);
     }
     if (status == PVT_OK) {
         status = MakeSights(context, ascent);
@@ -212,13 +246,16 @@ pvtStatus pvtAscendOccluder(pvtContext* context, const pvtAscentOptions* options
                             pvtOccluder* occluder)
 {
     assert(options->budget >= 1 && options->budget <= PVT_MOST_ASCENT);
+    assert(options->startCount >= 1 &&
+           options->startEnds[options->startCount - 1] == occluder->loops.loopCount);
     pvtAscent* ascent = pvtAllocate(context, 1, sizeof *ascent);
     if (ascent == NULL) {
         return pvtContext_GetStatus(context);
     }
     ascent->options = options;
+    ascent->occluder = occluder;
     ascent->frame = occluder->frame;
-    pvtStatus status = Prepare(context, occluder, ascent);
+    pvtStatus status = Prepare(context, ascent);
     if (status == PVT_OK) {
         status = pvtAscent_Climb(context, ascent);
     }

@@ -17,8 +17,9 @@ typedef struct pvtAscentOptions {
     const pvtSheetSet* sheets; ///< polygons on these stay where they are; borrowed; may be null
     int budget;                ///< triangles, at most PVT_MOST_ASCENT
     uint64_t seed;
-    int tries;       ///< climbs from the same start, of which the best is kept
-    int iterations;  ///< steps of all corners in each
+    const size_t* startEnds; ///< of the occluder's polygons, where those of each start end
+    int startCount;          ///< 1 or more: there is a climb from each
+    int iterations;          ///< steps of all corners in each
     int cycles;      ///< times that triangles are added to it and the least useful taken away again
     int sights;      ///< views to learn from
     int batch;       ///< of these that a step looks at, 1 to 64
@@ -31,9 +32,10 @@ enum { PVT_MOST_ASCENT = 512 };
 /// Triangles that the ascent of a budget likes to start from: it takes the least useful away.
 int pvtGetAscentStart(int budget);
 
-/// Moves the corners of all triangles so that they hide more, and triangles to where they are worth
-/// more. Triangles leave the planes of their polygons, and end inside. `planes` and `loops` keep
-/// those polygons of which a triangle is left. The mesh has at most `budget` triangles afterwards.
+/// From the starts that the occluder's polygons are, moves the corners of all triangles so that
+/// they hide more, and triangles to where they are worth more. Triangles leave the planes of their
+/// polygons, and end inside. `planes` and `loops` keep those polygons of which a triangle is left.
+/// The mesh has at most `budget` triangles afterwards.
 pvtStatus pvtAscendOccluder(pvtContext* context, const pvtAscentOptions* options,
                             pvtOccluder* occluder);
 

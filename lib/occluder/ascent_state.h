@@ -11,6 +11,7 @@
 
 typedef struct pvtAscent {
     const pvtAscentOptions* options;
+    const pvtOccluder* occluder; ///< as it was selected
     pvtGridFrame frame;
     pvtTriangleSet set; ///< tagged by the polygons that they began as
     pvtField field;
@@ -20,19 +21,22 @@ typedef struct pvtAscent {
     float (*speeds)[3];   ///< of each corner: the running mean of its pulls
     float* squares;       ///< of each corner: the running mean of their squares
     int32_t* moved;       ///< scratch, one a corner
-    pvtTriangleSet start; ///< what each try starts from
+    pvtTriangleSet start; ///< the first
     pvtTriangleSet best;  ///< of the climbs and cycles
+    pvtTriangleSet rival; ///< the best before the last climb
     double bestWorth;
-    int steps;      ///< taken in all tries
-    int contactAge; ///< steps since contacts were looked for; 0: look for them
-    size_t next;    ///< sight that comes next
-    float softness; ///< [px]
-    float reach;    ///< [vx] of a step
-    bool isShell;   ///< most triangles had walls on both sides when they settled once
+    int steps, allSteps; ///< that were taken, and that there are to be
+    int contactAge;      ///< steps since contacts were looked for; 0: look for them
+    size_t next;         ///< sight that comes next
+    float softness;      ///< [px]
+    float reach;         ///< [vx] of a step
+    bool isShell;        ///< most triangles had walls on both sides when they settled once
 } pvtAscent;
 
 /// Adds the mesh's positions [wu] to the corners of `set`, each anchored where it is.
 void pvtAscent_AddCorners(pvtAscent* ascent, const pvtMesh* mesh);
+/// `set` becomes one of the starts.
+pvtStatus pvtAscent_TakeStart(pvtContext* context, pvtAscent* ascent, int start);
 /// Where the mesh has no more triangles than the budget, `set` becomes these, wherever they lie.
 /// `mesh` may be null.
 pvtStatus pvtAscent_TakeMesh(pvtContext* context, const pvtMesh* mesh, pvtAscent* ascent,

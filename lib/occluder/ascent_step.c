@@ -80,10 +80,10 @@ static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal
 static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
 {
     static const struct {
-        int tries, iterations, cycles, sights, batch, polish;
-    } efforts[] = {[PVT_EFFORT_FAST] = {1, 240, 0, 512, 12, 1},
-                   [PVT_EFFORT_DEFAULT] = {1, 400, 6, 1024, 8, 3},
-                   [PVT_EFFORT_BEST] = {4, 800, 16, 1024, 16, 12}};
+        int iterations, cycles, sights, batch, polish;
+    } efforts[] = {[PVT_EFFORT_FAST] = {240, 0, 512, 12, 1},
+                   [PVT_EFFORT_DEFAULT] = {200, 3, 1024, 8, 3},
+                   [PVT_EFFORT_BEST] = {450, 16, 1024, 16, 12}};
     const int effort = (int)build->options->effort;
     const int budget = build->options->budget;
     pvtViewOptions views = build->options->views;
@@ -101,7 +101,8 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .sheets = &build->sheets,
         .budget = budget,
         .seed = build->options->seed,
-        .tries = efforts[effort].tries,
+        .startEnds = build->startEnds,
+        .startCount = build->startCount,
         .iterations = pvtSpreadEffort(efforts[effort].iterations, budget),
         .cycles = efforts[effort].cycles,
         .sights = efforts[effort].sights,

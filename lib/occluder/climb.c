@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // How the ascent goes: steps, and what they become less of. Softness, the steps' length and the
 // number of triangles fall together, from a few pixels that matter everywhere to the last ones at
-// the silhouette. What such a climb ends at depends on where it began. So after it come cycles, as
-// in iterated local search (Lourenço et al., 2003): the best so far is softened again, triangles
-// are added where most is left to hide, and the least useful ones are taken away on the way down.
+// the silhouette. What such a climb ends at depends on where it began. So there are several starts;
+// what the next climb ends at and the best so far are united, as in memetic algorithms (Moscato, On
+// Evolution, Search, Optimization, Genetic Algorithms and Martial Arts, 1989), and of twice as many
+// triangles the least useful are taken away while all go on climbing. After that come cycles, as in
+// iterated local search (Lourenço et al., 2003): the best so far is softened again, triangles are
+// added where most is left to hide, and the least useful ones are taken away on the way down.
 #include "ascent_state.h"
 
 #include "base/context.h"
@@ -13,6 +16,7 @@
 #include <string.h>
 
 enum {
+    LEGS = 2, // of a climb
     SWEEPS = 3,
     CONTACT_STEPS = 8,
     LATE_CONTACT_STEPS = 4,
@@ -27,9 +31,10 @@ typedef struct Leg {
     double pruneBegin, pruneEnd;  // shares of the leg between which the surplus is taken away
 } Leg;
 
-static const Leg climb[] = {{0.55, 120.0F, 2.3F, 3.0F, 1.8F, 0.0, 1.0},
-                            {0.45, 12.0F, 2.8F, 0.5F, 1.6F, 0.0, 0.0}};
-static const Leg cycle = {0.75, 60.0F, 4.5F, 2.0F, 3.0F, 0.3, 0.7};
+static const Leg climb[LEGS] = {{0.55, 120.0F, 2.3F, 3.0F, 1.8F, 0.0, 1.0},
+                                {0.45, 12.0F, 2.8F, 0.5F, 1.6F, 0.0, 0.0}};
+static const Leg crossing = {1.4, 60.0F, 4.5F, 2.0F, 3.0F, 0.0, 0.7};
+static const Leg cycle = {1.4, 60.0F, 4.5F, 2.0F, 3.0F, 0.3, 0.7};
 
 static const double GROWTH = 0.35;        // triangles added in a cycle, as part of the budget
 static const float JUDGE_SOFTNESS = 0.6F; // [px]
@@ -163,10 +168,7 @@ static int GetSteps(const pvtAscent* ascent, const Leg* leg)
 static bool GoOn(pvtContext* context, const pvtAscent* ascent)
 {
     const pvtAscentOptions* options = ascent->options;
-    const double all =
-        options->tries * (GetSteps(ascent, &climb[0]) + GetSteps(ascent, &climb[1])) +
-        options->cycles * GetSteps(ascent, &cycle);
-    const double share = ascent->steps / all;
+    const double share = (double)ascent->steps / ascent->allSteps;
     pvtReportProgress(context, share < 1.0 ? share : 1.0);
     if (options->deadline > 0.0 && pvtGetSeconds() > options->deadline) {
         pvtLog(context, PVT_LOG_WARNING,
@@ -217,16 +219,40 @@ static pvtStatus KeepIfBetter(pvtContext* context, pvtAscent* ascent)
     return status;
 }
 
-// From the start again, and from other sights on: that is enough to end elsewhere.
-static pvtStatus RunClimb(pvtContext* context, pvtAscent* ascent, int attempt, bool* goesOn)
+static int CountSteps(const pvtAscent* ascent)
 {
-    ascent->next = ascent->sights.count * (size_t)attempt / (size_t)ascent->options->tries;
-    pvtTriangleSet_Copy(&ascent->start, &ascent->set);
+    const int starts = ascent->options->startCount;
+    int steps = ascent->options->cycles * GetSteps(ascent, &cycle) +
+                (starts - 1) * GetSteps(ascent, &crossing);
+    for (size_t i = 0; i < LEGS; ++i) {
+        steps += starts * GetSteps(ascent, &climb[i]);
+    }
+    return steps;
+}
+
+static pvtStatus RunClimb(pvtContext* context, pvtAscent* ascent, int start, bool* goesOn)
+{
+    ascent->next = ascent->sights.count * (size_t)start / (size_t)ascent->options->startCount;
+    const pvtStatus status = pvtAscent_TakeStart(context, ascent, start);
+    if (status != PVT_OK) {
+        return status;
+    }
     TakeRest(ascent);
-    for (size_t i = 0; i < sizeof climb / sizeof *climb && *goesOn; ++i) {
+    for (size_t i = 0; i < LEGS && *goesOn; ++i) {
         BeginLeg(ascent, &climb[i]);
         *goesOn = RunLeg(context, ascent, &climb[i]);
     }
+    return KeepIfBetter(context, ascent);
+}
+
+// With what the last climb ended at.
+static pvtStatus RunCrossing(pvtContext* context, pvtAscent* ascent, bool* goesOn)
+{
+    pvtTriangleSet_Append(&ascent->set, &ascent->rival);
+    pvtTriangleSet_FindEdges(&ascent->set);
+    TakeRest(ascent);
+    BeginLeg(ascent, &crossing);
+    *goesOn = RunLeg(context, ascent, &crossing);
     return KeepIfBetter(context, ascent);
 }
 
@@ -270,12 +296,17 @@ pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
 {
     bool goesOn = true;
     ascent->bestWorth = -1.0;
+    ascent->allSteps = CountSteps(ascent);
     pvtStatus status = TryMesh(context, ascent->options->mesh, ascent);
     if (status == PVT_OK) {
         status = TryMesh(context, ascent->options->flat, ascent);
     }
-    for (int i = 0; i < ascent->options->tries && goesOn && status == PVT_OK; ++i) {
+    for (int i = 0; i < ascent->options->startCount && goesOn && status == PVT_OK; ++i) {
+        pvtTriangleSet_Copy(&ascent->best, &ascent->rival);
         status = RunClimb(context, ascent, i, &goesOn);
+        if (i > 0 && goesOn && status == PVT_OK) {
+            status = RunCrossing(context, ascent, &goesOn);
+        }
     }
     for (int i = 0; i < ascent->options->cycles && goesOn && status == PVT_OK; ++i) {
         status = RunCycle(context, ascent, &goesOn);

@@ -116,6 +116,32 @@ void pvtAddOccluderPolygon(pvtOccluder* occluder, const pvtPlane* plane, const p
     loops->starts[loops->loopCount] = loops->pointCount;
 }
 
+pvtStatus pvtJoinOccluders(pvtContext* context, const pvtOccluder* parts, size_t count,
+                           pvtOccluder* joined)
+{
+    size_t polygons = 0, points = 0;
+    for (size_t i = 0; i < count; ++i) {
+        polygons += parts[i].loops.loopCount;
+        points += parts[i].loops.pointCount;
+    }
+    pvtStatus status = pvtAllocateOccluder(context, &parts[0].frame, polygons, points, joined);
+    for (size_t i = 0; i < count && status == PVT_OK; ++i) {
+        const pvtLoopSet* loops = &parts[i].loops;
+        for (size_t p = 0; p < loops->loopCount; ++p) {
+            const size_t first = loops->starts[p];
+            pvtAddOccluderPolygon(joined, &parts[i].planes[p], loops->points + first,
+                                  loops->starts[p + 1] - first);
+        }
+    }
+    if (status == PVT_OK) {
+        status = pvtMakeOccluderMesh(context, joined);
+    }
+    if (status != PVT_OK) {
+        pvtOccluder_Free(context, joined);
+    }
+    return status;
+}
+
 pvtStatus pvtTakeCut(pvtContext* context, const pvtCandidateSet* candidates, const pvtCut* cut,
                      pvtOccluder* occluder)
 {

@@ -13,6 +13,10 @@ pvtStatus pvtAllocateOccluder(pvtContext* context, const pvtGridFrame* frame, si
 void pvtAddOccluderPolygon(pvtOccluder* occluder, const pvtPlane* plane, const pvtPoint2* points,
                            size_t count);
 
+/// All polygons of `count` occluders in one frame, one occluder after the other.
+pvtStatus pvtJoinOccluders(pvtContext* context, const pvtOccluder* parts, size_t count,
+                           pvtOccluder* joined);
+
 /// Of one polygon.
 static inline size_t pvtCountPolygonTriangles(const pvtLoopSet* loops, size_t loop)
 {

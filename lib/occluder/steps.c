@@ -12,7 +12,6 @@
 enum {
     MIN_RESOLUTION = 8,
     MAX_RESOLUTION = 2048,
-    SELECT_VIEWS = 36,
     MAX_REFINED = 512, // triangles: beyond, panels are so many that single moves hardly count
 };
 
@@ -223,17 +222,12 @@ pvtStatus pvtFailNothingInside(pvtContext* context, const pvtBuild* build)
         resolution);
 }
 
-static bool IsPaper(const pvtBuild* build)
-{
-    return build->options->method == PVT_METHOD_PAPER;
-}
-
 pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
 {
     const pvtBuildOptions* options = build->options;
     pvtSolidOptions solid = pvtDefaultSolidOptions();
     solid.smallestHole = build->stats.smallestHole;
-    solid.strict = !IsPaper(build) || build->stats.tolerance == 0.0;
+    solid.strict = !pvtIsPaper(build) || build->stats.tolerance == 0.0;
     solid.ground = options->ground;
     solid.terrain = options->terrain;
     // Strictly inside there is nothing below the lowest valleys: they would be holes in any plate.
@@ -289,10 +283,9 @@ static pvtStatus CreateSlicer(pvtContext* context, pvtBuild* build, const pvtBit
     return status;
 }
 
-// How many candidates there are, from how many planes each is the best, and over how many views
-// they are chosen.
+// How many candidates there are, and from how many planes each is the best.
 typedef struct SearchSize {
-    int directions, depths, samplesPerBin, views;
+    int directions, depths, samplesPerBin;
 } SearchSize;
 
 static SearchSize GetSearchSize(const pvtBuild* build)
@@ -300,12 +293,12 @@ static SearchSize GetSearchSize(const pvtBuild* build)
     const bool isFast = build->options->effort == PVT_EFFORT_FAST;
     // What ascends needs no more than a start, and leaves it far behind.
     if (pvtMayAscend(build)) {
-        return isFast ? (SearchSize){6, 16, 4, 8} : (SearchSize){16, 16, 8, 16};
+        return isFast ? (SearchSize){6, 16, 4} : (SearchSize){16, 16, 4};
     }
     const pvtPlanOptions whole = pvtDefaultPlanOptions();
     // A third of the candidates: in a short search the others hardly count.
-    return isFast ? (SearchSize){16, 16, whole.samplesPerBin, 16}
-                  : (SearchSize){whole.directions, whole.depths, whole.samplesPerBin, SELECT_VIEWS};
+    return isFast ? (SearchSize){16, 16, whole.samplesPerBin}
+                  : (SearchSize){whole.directions, whole.depths, whole.samplesPerBin};
 }
 
 // What is sliced: the paper slices the solid, and lets simplification stray by the tolerance; the
@@ -318,7 +311,7 @@ static const pvtSliceVolume* GetSlicedVolume(const pvtBuild* build)
 pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
 {
     pvtStatus status = PVT_OK;
-    if (IsPaper(build) && build->stats.tolerance > 0.0) {
+    if (pvtIsPaper(build) && build->stats.tolerance > 0.0) {
         status = pvtCreateSliceVolume(context, &build->solid.inside, &build->solidVolume);
     }
     const pvtSliceVolume* volume = GetSlicedVolume(build);
@@ -335,9 +328,9 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
     }
     if (status == PVT_OK) {
         pvtPlanOptions options = pvtDefaultPlanOptions();
-        options.faces = IsPaper(build) ? NULL : &faces;
-        options.axes = !IsPaper(build);
-        if (!IsPaper(build)) {
+        options.faces = pvtIsPaper(build) ? NULL : &faces;
+        options.axes = !pvtIsPaper(build);
+        if (!pvtIsPaper(build)) {
             const SearchSize size = GetSearchSize(build);
             options.directions = size.directions;
             options.depths = size.depths;
@@ -347,7 +340,7 @@ pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build)
     }
     if (status == PVT_OK) {
         pvtSearchOptions options = pvtDefaultSearchOptions();
-        options.rule = IsPaper(build) ? PVT_SLICE_CENTER : PVT_SLICE_COVERED;
+        options.rule = pvtIsPaper(build) ? PVT_SLICE_CENTER : PVT_SLICE_COVERED;
         options.slicer = build->hasSlicer ? &build->slicer : NULL;
         status = pvtSearchSections(context, &options, volume, &plan, &build->sections);
     }
@@ -360,7 +353,7 @@ pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build)
 {
     pvtCandidateOptions options = pvtDefaultCandidateOptions();
     options.maxTriangles = build->options->budget < 62 ? build->options->budget : 62;
-    if (IsPaper(build)) {
+    if (pvtIsPaper(build)) {
         options.rule = build->stats.tolerance > 0.0 ? PVT_SLICE_CENTER : PVT_SLICE_COVERED;
         options.slicer = build->hasSlicer && build->stats.tolerance > 0.0 ? &build->slicer : NULL;
         options.simplification = build->stats.tolerance / build->stats.voxelSize;
@@ -380,50 +373,6 @@ pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build)
     return status;
 }
 
-// A cut is a start, chosen over fewer views than refinement and the final measure see.
-static pvtStatus Choose(pvtContext* context, pvtBuild* build, const pvtViewOptions* views,
-                        pvtCut* cut)
-{
-    pvtViewOptions few = *views;
-    const int most = GetSearchSize(build).views;
-    few.count = few.count < most ? few.count : most;
-    pvtViewSet set;
-    pvtStatus status = pvtMakeViews(context, &few, &set);
-    if (status == PVT_OK) {
-        pvtSelectOptions options = pvtDefaultSelectOptions();
-        options.budget = build->options->budget;
-        options.surplus =
-            pvtMayAscend(build) ? pvtGetAscentStart(options.budget) - options.budget : 0;
-        options.views = IsPaper(build) ? &build->views : &set;
-        options.bounds = build->bounds;
-        status = IsPaper(build) ? pvtReduceOccluder(context, &options, &build->candidates, cut)
-                                : pvtSelectOccluder(context, &options, &build->candidates, cut);
-    }
-    pvtViewSet_Free(context, &set);
-    return status;
-}
-
-pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
-{
-    pvtViewOptions views = build->options->views;
-    views.up = (int)build->options->up;
-    pvtCut cut = {0};
-    pvtStatus status = pvtMakeViews(context, &views, &build->views);
-    if (status == PVT_OK) {
-        status = Choose(context, build, &views, &cut);
-    }
-    if (status == PVT_OK) {
-        status = pvtTakeCut(context, &build->candidates, &cut, &build->occluder);
-    }
-    if (status == PVT_OK && cut.ample != NULL) {
-        const pvtCut ample = {.triangles = cut.ample, .count = cut.count};
-        build->flat = build->occluder;
-        status = pvtTakeCut(context, &build->candidates, &ample, &build->occluder);
-    }
-    pvtCut_Free(context, &cut);
-    return status;
-}
-
 double pvtGetDeadline(const pvtBuild* build)
 {
     return build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
@@ -431,7 +380,7 @@ double pvtGetDeadline(const pvtBuild* build)
 
 static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
 {
-    if (IsPaper(build) || build->options->budget > MAX_REFINED || pvtMayAscend(build)) {
+    if (pvtIsPaper(build) || build->options->budget > MAX_REFINED || pvtMayAscend(build)) {
         return PVT_OK;
     }
     static const int trials[] = {

@@ -6,6 +6,8 @@
 #include "inside.h"
 #include "sheets.h"
 
+enum { PVT_MOST_STARTS = 4 }; ///< of an ascent
+
 /// What a build holds on its way; one place to free it.
 typedef struct pvtBuild {
     const pvtBuildOptions* options;
@@ -29,7 +31,9 @@ typedef struct pvtBuild {
     pvtBitGrid hiding;  ///< the allowed voxels and those that the sheets pass; may have no words
     pvtCandidateSet candidates;
     pvtViewSet views;
-    pvtOccluder occluder;
+    pvtOccluder occluder;              ///< before an ascent the polygons of all its starts
+    size_t startEnds[PVT_MOST_STARTS]; ///< of these, where those of each start end
+    int startCount;
     pvtOccluder flat; ///< selected for the budget alone, before the ascent; else empty
 } pvtBuild;
 
@@ -57,6 +61,10 @@ bool pvtFindVoxelBounds(const pvtBitGrid* grid, pvtBox3* bounds);
 void pvtWidenBounds(const pvtBitGrid* grid, pvtBox3* bounds);
 /// The measure of everything that may be covered, into the stats; needs the views.
 pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build);
+static inline bool pvtIsPaper(const pvtBuild* build)
+{
+    return build->options->method == PVT_METHOD_PAPER;
+}
 /// Whether triangles may leave the planes of their polygons.
 bool pvtMayAscend(const pvtBuild* build);
 /// Where triangles may lie.

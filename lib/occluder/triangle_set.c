@@ -74,6 +74,21 @@ void pvtTriangleSet_AddTriangle(pvtTriangleSet* set, const uint32_t corners[3], 
     set->tags[set->triangleCount++] = tag;
 }
 
+void pvtTriangleSet_Append(pvtTriangleSet* set, const pvtTriangleSet* more)
+{
+    const uint32_t first = (uint32_t)set->cornerCount;
+    for (int c = 0; c < more->cornerCount; ++c) {
+        const uint32_t corner = pvtTriangleSet_AddCorner(set, more->corners[c], more->isFixed[c]);
+        memcpy(set->anchors[corner], more->anchors[c], sizeof *set->anchors);
+    }
+    for (int t = 0; t < more->triangleCount; ++t) {
+        const uint32_t* corners = more->triangles[t];
+        pvtTriangleSet_AddTriangle(
+            set, (uint32_t[3]){first + corners[0], first + corners[1], first + corners[2]},
+            more->tags[t]);
+    }
+}
+
 void pvtTriangleSet_Remove(pvtTriangleSet* set, int triangle)
 {
     const int last = --set->triangleCount;

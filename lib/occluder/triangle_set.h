@@ -38,6 +38,8 @@ void pvtTriangleSet_Copy(const pvtTriangleSet* from, pvtTriangleSet* to);
 /// Both within the capacity. A corner is anchored where it is added.
 uint32_t pvtTriangleSet_AddCorner(pvtTriangleSet* set, const float place[3], bool isFixed);
 void pvtTriangleSet_AddTriangle(pvtTriangleSet* set, const uint32_t corners[3], int32_t tag);
+/// Adds all of another set, within the capacity, with its corners where they are and are anchored.
+void pvtTriangleSet_Append(pvtTriangleSet* set, const pvtTriangleSet* more);
 /// The last triangle takes its place.
 void pvtTriangleSet_Remove(pvtTriangleSet* set, int triangle);
 /// Takes away corners that no triangle uses. `moved` (cornerCapacity) tells for each that is left

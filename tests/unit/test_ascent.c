@@ -92,41 +92,6 @@ static void the_field_of_a_ball_is_its_depth(void** state)
     DestroyTestContext(context);
 }
 
-static void edges_are_shared_by_pairs_of_triangles(void** state)
-{
-    (void)state;
-    pvtContext* context = CreateTestContext(1);
-    pvtTriangleSet set;
-    CHECK_OK(context, pvtCreateTriangleSet(context, 8, 8, &set));
-    for (int i = 0; i < 6; ++i) {
-        pvtTriangleSet_AddCorner(&set, (float[3]){(float)i, (float)(i * i), 1.0F}, i == 5);
-    }
-    // Three triangles on the edge from 0 to 1: a pair, and one that is left.
-    pvtTriangleSet_AddTriangle(&set, (uint32_t[3]){0, 1, 2}, 7);
-    pvtTriangleSet_AddTriangle(&set, (uint32_t[3]){1, 0, 3}, 8);
-    pvtTriangleSet_AddTriangle(&set, (uint32_t[3]){0, 1, 5}, 9);
-    pvtTriangleSet_FindEdges(&set);
-    assert_int_equal(set.edgeCount, 8);
-    int pairs = 0;
-    for (int e = 0; e < set.edgeCount; ++e) {
-        pairs += set.edges[e].sideCount == 2 ? 1 : 0;
-    }
-    assert_int_equal(pairs, 1);
-    assert_true(!set.isOpen[0][0] && set.isOpen[0][1] && set.isOpen[0][2]);
-    pvtTriangleSet_Remove(&set, 0);
-    int32_t moved[8];
-    pvtTriangleSet_DropCorners(&set, moved);
-    assert_int_equal(set.cornerCount, 4);
-    assert_int_equal(set.triangleCount, 2);
-    assert_int_equal(set.tags[0], 9);
-    for (int c = 0; c < set.cornerCount; ++c) {
-        assert_true(set.corners[c][0] == (float)moved[c]);
-        assert_true(set.isFixed[c] == (moved[c] == 5));
-    }
-    pvtTriangleSet_Free(context, &set);
-    DestroyTestContext(context);
-}
-
 typedef struct Lesson {
     pvtBitGrid grid;
     pvtField field;
@@ -659,7 +624,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_field_of_a_ball_is_its_depth),
-        cmocka_unit_test(edges_are_shared_by_pairs_of_triangles),
         cmocka_unit_test(following_the_pull_hides_more),
         cmocka_unit_test(cells_away_from_the_goal_are_beyond_it),
         cmocka_unit_test(what_reaches_beyond_the_goal_is_pulled_back),

@@ -2,6 +2,7 @@
 // Candidates, the two ways to choose among them, and refinement, on a solid of two balls.
 #include "check.h"
 
+#include "occluder/occluder.h"
 #include "occluder/refine.h"
 #include "voxel_shapes.h"
 
@@ -125,6 +126,47 @@ static void a_larger_budget_never_hides_less(void** state)
     DestroyTestContext(context);
 }
 
+static void joined_occluders_keep_their_polygons_in_order(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    Fixture fixture;
+    CreateFixture(context, &fixture);
+    pvtOccluder parts[3], joined;
+    size_t polygons = 0, triangles = 0;
+    for (int i = 0; i < 3; ++i) {
+        fixture.options.budget = 5 + 9 * i;
+        pvtCut cut;
+        CHECK_OK(context, pvtSelectOccluder(context, &fixture.options, &fixture.candidates, &cut));
+        CHECK_OK(context, pvtTakeCut(context, &fixture.candidates, &cut, &parts[i]));
+        polygons += parts[i].loops.loopCount;
+        triangles += parts[i].mesh.triangleCount;
+        pvtCut_Free(context, &cut);
+    }
+    CHECK_OK(context, pvtJoinOccluders(context, parts, 3, &joined));
+    assert_int_equal(joined.loops.loopCount, polygons);
+    assert_int_equal(joined.mesh.triangleCount, triangles);
+    size_t polygon = 0, triangle = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (size_t p = 0; p < parts[i].loops.loopCount; ++p, ++polygon) {
+            assert_memory_equal(&joined.planes[polygon], &parts[i].planes[p], sizeof(pvtPlane));
+            assert_int_equal(pvtCountPolygonTriangles(&joined.loops, polygon),
+                             pvtCountPolygonTriangles(&parts[i].loops, p));
+        }
+        for (size_t t = 0; t < 3 * parts[i].mesh.triangleCount; ++t) {
+            const uint32_t own = parts[i].mesh.indices[t];
+            const uint32_t other = joined.mesh.indices[3 * triangle + t];
+            assert_memory_equal(&joined.mesh.positions[other], &parts[i].mesh.positions[own],
+                                sizeof(pvtVec3));
+        }
+        triangle += parts[i].mesh.triangleCount;
+        pvtOccluder_Free(context, &parts[i]);
+    }
+    pvtOccluder_Free(context, &joined);
+    FreeFixture(context, &fixture);
+    DestroyTestContext(context);
+}
+
 static void the_papers_way_steps_back_to_the_budget_exactly(void** state)
 {
     (void)state;
@@ -193,6 +235,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_link_of_every_candidate_stays_in_the_grid),
         cmocka_unit_test(a_larger_budget_never_hides_less),
+        cmocka_unit_test(joined_occluders_keep_their_polygons_in_order),
         cmocka_unit_test(the_papers_way_steps_back_to_the_budget_exactly),
         cmocka_unit_test(refinement_raises_the_measure_and_keeps_budget_and_promise),
     };

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Which polygons are chosen, over which views, and how often: an ascent has several starts, each
+// chosen over other views, since which of them leads farthest is only known at its end.
+#include "steps.h"
+
+#include "ascent.h"
+#include "occluder.h"
+
+enum { VIEWS = 36, FAST_VIEWS = 16 };
+
+// A cut is a start, chosen over fewer views than refinement and the final measure see.
+static int GetViewCount(const pvtBuild* build, int start)
+{
+    static const int first[] = {
+        [PVT_EFFORT_FAST] = 8, [PVT_EFFORT_DEFAULT] = 12, [PVT_EFFORT_BEST] = 16};
+    static const int others[PVT_MOST_STARTS] = {0, 8, 4, 12};
+    if (!pvtMayAscend(build)) {
+        return build->options->effort == PVT_EFFORT_FAST ? FAST_VIEWS : VIEWS;
+    }
+    return start == 0 ? first[build->options->effort] : others[start];
+}
+
+static int GetStartCount(const pvtBuild* build)
+{
+    static const int counts[] = {
+        [PVT_EFFORT_FAST] = 1, [PVT_EFFORT_DEFAULT] = 3, [PVT_EFFORT_BEST] = PVT_MOST_STARTS};
+    return pvtMayAscend(build) ? counts[build->options->effort] : 1;
+}
+
+static pvtStatus Choose(pvtContext* context, pvtBuild* build, int start, pvtCut* cut)
+{
+    pvtViewOptions few = build->options->views;
+    const int most = GetViewCount(build, start);
+    few.up = (int)build->options->up;
+    few.count = few.count < most ? few.count : most;
+    pvtViewSet set;
+    pvtStatus status = pvtMakeViews(context, &few, &set);
+    if (status == PVT_OK) {
+        pvtSelectOptions options = pvtDefaultSelectOptions();
+        options.budget = build->options->budget;
+        options.surplus =
+            pvtMayAscend(build) ? pvtGetAscentStart(options.budget) - options.budget : 0;
+        options.views = pvtIsPaper(build) ? &build->views : &set;
+        options.bounds = build->bounds;
+        status = pvtIsPaper(build) ? pvtReduceOccluder(context, &options, &build->candidates, cut)
+                                   : pvtSelectOccluder(context, &options, &build->candidates, cut);
+    }
+    pvtViewSet_Free(context, &set);
+    return status;
+}
+
+// The polygons of a start; those of the first within the budget alone, too.
+static pvtStatus TakeStart(pvtContext* context, pvtBuild* build, int start, pvtOccluder* occluder)
+{
+    pvtCut cut = {0};
+    pvtStatus status = Choose(context, build, start, &cut);
+    if (status == PVT_OK && cut.ample == NULL) {
+        status = pvtTakeCut(context, &build->candidates, &cut, occluder);
+    } else if (status == PVT_OK) {
+        const pvtCut ample = {.triangles = cut.ample, .count = cut.count};
+        status = pvtTakeCut(context, &build->candidates, &ample, occluder);
+        if (status == PVT_OK && start == 0) {
+            status = pvtTakeCut(context, &build->candidates, &cut, &build->flat);
+        }
+    }
+    pvtCut_Free(context, &cut);
+    return status;
+}
+
+pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
+{
+    pvtViewOptions views = build->options->views;
+    views.up = (int)build->options->up;
+    const int count = GetStartCount(build);
+    pvtOccluder starts[PVT_MOST_STARTS] = {0};
+    pvtStatus status = pvtMakeViews(context, &views, &build->views);
+    for (int s = 0; s < count && status == PVT_OK; ++s) {
+        status = TakeStart(context, build, s, &starts[s]);
+        const size_t before = s > 0 ? build->startEnds[s - 1] : 0;
+        build->startEnds[s] = before + starts[s].loops.loopCount;
+    }
+    if (status == PVT_OK) {
+        status = pvtJoinOccluders(context, starts, (size_t)count, &build->occluder);
+    }
+    build->startCount = count;
+    for (int s = 0; s < count; ++s) {
+        pvtOccluder_Free(context, &starts[s]);
+    }
+    return status;
+}
