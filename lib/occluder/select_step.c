@@ -6,18 +6,21 @@
 #include "ascent.h"
 #include "occluder.h"
 
-enum { VIEWS = 36, FAST_VIEWS = 16 };
-
-// A cut is a start, chosen over fewer views than refinement and the final measure see.
+// A cut is a start, chosen over fewer views than refinement and the final measure see. Within a
+// tolerance the first may be the end, too, where rows of holes are to be hidden.
 static int GetViewCount(const pvtBuild* build, int start)
 {
-    static const int first[] = {
-        [PVT_EFFORT_FAST] = 8, [PVT_EFFORT_DEFAULT] = 12, [PVT_EFFORT_BEST] = 16};
     static const int others[PVT_MOST_STARTS] = {0, 8, 4, 12};
+    const bool isFast = build->options->effort == PVT_EFFORT_FAST;
     if (!pvtMayAscend(build)) {
-        return build->options->effort == PVT_EFFORT_FAST ? FAST_VIEWS : VIEWS;
+        return isFast ? 16 : 36;
     }
-    return start == 0 ? first[build->options->effort] : others[start];
+    if (start > 0) {
+        return others[start];
+    }
+    const bool isStart =
+        build->options->effort == PVT_EFFORT_DEFAULT && build->stats.tolerance == 0.0;
+    return isFast ? 8 : isStart ? 12 : 16;
 }
 
 static int GetStartCount(const pvtBuild* build)
