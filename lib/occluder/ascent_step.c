@@ -82,7 +82,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
     static const struct {
         int iterations, cycles, sights, batch, polish;
     } efforts[] = {[PVT_EFFORT_FAST] = {240, 0, 512, 12, 1},
-                   [PVT_EFFORT_DEFAULT] = {200, 3, 1024, 8, 3},
+                   [PVT_EFFORT_DEFAULT] = {185, 3, 1024, 8, 3},
                    [PVT_EFFORT_BEST] = {450, 16, 1024, 16, 12}};
     const int effort = (int)build->options->effort;
     const int budget = build->options->budget;
