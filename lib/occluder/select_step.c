@@ -6,6 +6,8 @@
 #include "ascent.h"
 #include "occluder.h"
 
+#include "base/context.h"
+
 // A cut is a start, chosen over fewer views than refinement and the final measure see. Within a
 // tolerance the first may be the end, too, where rows of holes are to be hidden.
 static int GetViewCount(const pvtBuild* build, int start)
@@ -70,24 +72,42 @@ static pvtStatus TakeStart(pvtContext* context, pvtBuild* build, int start, pvtO
     return status;
 }
 
+static bool IsTimeUp(const pvtBuild* build)
+{
+    const double deadline = pvtGetDeadline(build);
+    return deadline > 0.0 && pvtGetSeconds() > deadline;
+}
+
+// What a list of views chooses is the same each time.
+static pvtStatus TakeStarts(pvtContext* context, pvtBuild* build)
+{
+    const bool isSame = build->options->views.list != NULL;
+    const int count = GetStartCount(build);
+    pvtOccluder starts[PVT_MOST_STARTS] = {0};
+    pvtStatus status = PVT_OK;
+    for (int s = 0; s < count && status == PVT_OK && (s == 0 || !IsTimeUp(build)); ++s) {
+        if (s > 0 && isSame) {
+            starts[s] = starts[0];
+        } else {
+            status = TakeStart(context, build, s, &starts[s]);
+        }
+        const size_t before = s > 0 ? build->startEnds[s - 1] : 0;
+        build->startEnds[s] = before + starts[s].loops.loopCount;
+        build->startCount = s + 1;
+    }
+    if (status == PVT_OK) {
+        status = pvtJoinOccluders(context, starts, (size_t)build->startCount, &build->occluder);
+    }
+    for (int s = 0; s < (isSame ? 1 : count); ++s) {
+        pvtOccluder_Free(context, &starts[s]);
+    }
+    return status;
+}
+
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
 {
     pvtViewOptions views = build->options->views;
     views.up = (int)build->options->up;
-    const int count = GetStartCount(build);
-    pvtOccluder starts[PVT_MOST_STARTS] = {0};
-    pvtStatus status = pvtMakeViews(context, &views, &build->views);
-    for (int s = 0; s < count && status == PVT_OK; ++s) {
-        status = TakeStart(context, build, s, &starts[s]);
-        const size_t before = s > 0 ? build->startEnds[s - 1] : 0;
-        build->startEnds[s] = before + starts[s].loops.loopCount;
-    }
-    if (status == PVT_OK) {
-        status = pvtJoinOccluders(context, starts, (size_t)count, &build->occluder);
-    }
-    build->startCount = count;
-    for (int s = 0; s < count; ++s) {
-        pvtOccluder_Free(context, &starts[s]);
-    }
-    return status;
+    const pvtStatus status = pvtMakeViews(context, &views, &build->views);
+    return status == PVT_OK ? TakeStarts(context, build) : status;
 }
