@@ -295,7 +295,7 @@ static pvtStatus RunCycle(pvtContext* context, pvtAscent* ascent, bool* goesOn)
 pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
 {
     bool goesOn = true;
-    ascent->bestWorth = -1.0;
+    ascent->bestWorth = -HUGE_VAL;
     ascent->allSteps = CountSteps(ascent);
     pvtStatus status = TryMesh(context, ascent->options->mesh, ascent);
     if (status == PVT_OK) {

@@ -265,6 +265,32 @@ static void a_landscape_is_covered_where_it_hides_something(void** state)
     DestroyTestContext(context);
 }
 
+// A roof high above the ground: all below it counts as inside, and hides many times what the roof
+// hides from the side. Whatever a climb ends at costs more than all that is to be hidden is worth.
+static void what_is_mostly_beyond_the_goal_has_an_occluder_yet(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    const pvtVec3 corners[] = {{0, 6, 0}, {10, 6, 0}, {10, 6, 0.8}, {0, 6, 0.8},
+                               {0, 0, 0}, {1, 0, 0},  {1, 0, 0.8},  {0, 0, 0.8}};
+    const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+    pvtMesh roof;
+    CHECK_OK(context, pvtCreateMesh(context, corners, 8, indices, 4, &roof));
+    pvtBuildOptions options = GetQuickOptions();
+    options.terrain = true;
+    options.resolution = 64;
+    for (int budget = 1; budget <= 16; budget += 5) {
+        options.budget = budget;
+        pvtOccluder occluder;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &roof, &occluder, NULL));
+        assert_true(occluder.mesh.triangleCount >= 1);
+        assert_true(occluder.mesh.triangleCount <= (size_t)budget);
+        pvtOccluder_Free(context, &occluder);
+    }
+    pvtMesh_Free(context, &roof);
+    DestroyTestContext(context);
+}
+
 // Three voxels of wall, curved both ways: triangles pushed off its one side come through the other.
 static void triangles_find_their_places_within_a_shell(void** state)
 {
@@ -480,6 +506,7 @@ int main(void)
         cmocka_unit_test(a_tolerance_hides_much_more_and_hardly_anything_that_is_seen),
         cmocka_unit_test(a_wall_is_covered_within_a_tolerance),
         cmocka_unit_test(a_landscape_is_covered_where_it_hides_something),
+        cmocka_unit_test(what_is_mostly_beyond_the_goal_has_an_occluder_yet),
         cmocka_unit_test(triangles_find_their_places_within_a_shell),
         cmocka_unit_test(what_floats_cannot_hold_stays_inside_or_is_told),
         cmocka_unit_test(the_budget_holds_and_nothing_leaves_the_allowed_voxels),
