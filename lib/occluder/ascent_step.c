@@ -13,8 +13,7 @@ enum { FINEST_GOAL = 512 };
 bool pvtMayAscend(const pvtBuild* build)
 {
     const bool hasRoom = build->stats.tolerance > 0.0 || build->solid.strictCount > 0;
-    return build->options->method != PVT_METHOD_PAPER && hasRoom &&
-           build->options->budget <= PVT_MOST_ASCENT;
+    return !pvtIsPaper(build) && hasRoom && build->options->budget <= PVT_MOST_ASCENT;
 }
 
 pvtInterior pvtGetInterior(const pvtBuild* build)
@@ -86,8 +85,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
                    [PVT_EFFORT_BEST] = {450, 16, 1024, 16, 12}};
     const int effort = (int)build->options->effort;
     const int budget = build->options->budget;
-    pvtViewOptions views = build->options->views;
-    views.up = (int)build->options->up;
+    const pvtViewOptions views = pvtGetViewOptions(build);
     Goal goal;
     pvtStatus status = MakeGoal(context, build, &goal);
     const pvtAscentOptions options = {

@@ -18,8 +18,7 @@ static const double MAX_BEND_BYTES = 0x1p27;
 // which stands for itself.
 static pvtStatus MakeMoreViews(pvtContext* context, const pvtBuild* build, pvtViewSet* set)
 {
-    pvtViewOptions options = build->options->views;
-    options.up = (int)build->options->up;
+    pvtViewOptions options = pvtGetViewOptions(build);
     *set = (pvtViewSet){0};
     const double bytes =
         pvtGetFacetBytes(build->occluder.mesh.triangleCount, (MORE_VIEWS + 1) * build->views.count);

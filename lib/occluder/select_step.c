@@ -34,9 +34,8 @@ static int GetStartCount(const pvtBuild* build)
 
 static pvtStatus Choose(pvtContext* context, pvtBuild* build, int start, pvtCut* cut)
 {
-    pvtViewOptions few = build->options->views;
+    pvtViewOptions few = pvtGetViewOptions(build);
     const int most = GetViewCount(build, start);
-    few.up = (int)build->options->up;
     few.count = few.count < most ? few.count : most;
     pvtViewSet set;
     pvtStatus status = pvtMakeViews(context, &few, &set);
@@ -106,8 +105,7 @@ static pvtStatus TakeStarts(pvtContext* context, pvtBuild* build)
 
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build)
 {
-    pvtViewOptions views = build->options->views;
-    views.up = (int)build->options->up;
+    const pvtViewOptions views = pvtGetViewOptions(build);
     const pvtStatus status = pvtMakeViews(context, &views, &build->views);
     return status == PVT_OK ? TakeStarts(context, build) : status;
 }

@@ -65,6 +65,13 @@ static inline bool pvtIsPaper(const pvtBuild* build)
 {
     return build->options->method == PVT_METHOD_PAPER;
 }
+/// How views are spread, with the build's own axis that is up.
+static inline pvtViewOptions pvtGetViewOptions(const pvtBuild* build)
+{
+    pvtViewOptions views = build->options->views;
+    views.up = (int)build->options->up;
+    return views;
+}
 /// Whether triangles may leave the planes of their polygons.
 bool pvtMayAscend(const pvtBuild* build);
 /// Where triangles may lie.

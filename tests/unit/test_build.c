@@ -257,7 +257,6 @@ static void a_landscape_is_covered_where_it_hides_something(void** state)
         options.budget = 24;
         options.views.count = 64;
         const pvtQuadScore uniform = ScoreBuild(context, &options, 256, &hills);
-        fprintf(stderr, "P %f R %f\n", uniform.precision, uniform.recall);
         assert_true(uniform.precision > cases[c].precision);
         assert_true(uniform.recall > cases[c].recall);
     }
