@@ -287,9 +287,9 @@ void pvtBeginStage(pvtContext* context, const char* name)
 
 void pvtReportProgress(pvtContext* context, double fraction)
 {
-    // A hundred reports a stage are enough for any bar.
-    if (context->def.progress != NULL &&
-        (fraction >= context->reported + 0.01 || fraction >= 1.0)) {
+    // A hundred reports a stage are enough for any bar, and one that it is done.
+    const bool isDone = fraction >= 1.0 && context->reported < 1.0;
+    if (context->def.progress != NULL && (isDone || fraction >= context->reported + 0.01)) {
         context->reported = fraction;
         context->def.progress(context->stage, fraction, context->def.user);
     }

@@ -93,6 +93,9 @@ static pvtStatus RunTask(EvaluateTask* task)
         pvtParallelFor(context, RunViews, (size_t)workers, 1, task);
         status = atomic_load(&task->status);
     }
+    if (status == PVT_OK) {
+        pvtReportProgress(context, 1.0); // the caller's thread may have had no view to tell of
+    }
     for (int i = 0; i < threads; ++i) {
         pvtViewScratch_Free(context, &task->scratches[i]);
     }

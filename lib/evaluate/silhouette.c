@@ -163,6 +163,9 @@ static pvtStatus RunTask(SilhouetteTask* task)
         pvtParallelFor(context, DrawPictures, task->options->count, 1, task);
         status = atomic_load(&task->status);
     }
+    if (status == PVT_OK) {
+        pvtReportProgress(context, 1.0); // the caller's thread may have drawn none
+    }
     for (size_t i = 0; i < threads; ++i) {
         pvtRelease(context, task->scratches[i].points);
         pvtRaster_Free(context, &task->scratches[i].original);

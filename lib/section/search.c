@@ -245,6 +245,9 @@ pvtStatus pvtSearchSections(pvtContext* context, const pvtSearchOptions* options
     if (status == PVT_OK) {
         status = RunSearch(&task, set);
     }
+    if (status == PVT_OK) {
+        pvtReportProgress(context, 1.0); // the caller's thread may have come too late to tell
+    }
     pvtRelease(context, task.scratch);
     pvtRelease(context, task.counts);
     pvtRelease(context, task.results);

@@ -240,13 +240,44 @@ static void cancelling_leaves_nothing_and_progress_only_grows(void** state)
     pvtEvaluation evaluation;
     CHECK_OK(context, pvtEvaluateOccluders(context, &options, &ball, &ball, 1, &evaluation));
     pvtEvaluation_Free(context, &evaluation);
-    assert_true(watch.reports > 1);
+    assert_true(watch.reports > 1 && watch.last == 1.0);
     const int all = atomic_load(&watch.asked);
     assert_true(all > 16 * 4);
     for (int patience = 0; patience < all - 1; patience += 1 + patience / 3) {
         watch = (Watch){.patience = patience};
         AssertRefused(context, &options, &ball, &ball, PVT_CANCELLED);
     }
+    FreeBall(&ball);
+    DestroyTestContext(context);
+}
+
+// All on the second worker, as when the caller's thread gets no time of a busy machine.
+static void RunOnOtherWorker(pvtTaskFcn* task, size_t count, size_t minRange, void* taskData,
+                             void* user)
+{
+    (void)minRange;
+    (void)user;
+    task(0, count, 1, taskData);
+}
+
+static void the_end_is_reported_even_when_the_caller_did_nothing(void** state)
+{
+    (void)state;
+    pvtMesh ball = CreateBall(8, 1.0, (pvtVec3){0, 0, 0});
+    const pvtEvaluateOptions options = MakeOptions(4, 10, 32);
+    Watch watch = {.patience = INT_MAX};
+    pvtContextDef def = pvtDefaultContextDef();
+    def.threadCount = 2;
+    def.parallelFor = RunOnOtherWorker;
+    def.progress = WatchProgress;
+    def.user = &watch;
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtEvaluation evaluation;
+    CHECK_OK(context, pvtEvaluateOccluders(context, &options, &ball, &ball, 1, &evaluation));
+    pvtEvaluation_Free(context, &evaluation);
+    assert_int_equal(watch.reports, 2);
+    assert_true(watch.last == 1.0);
     FreeBall(&ball);
     DestroyTestContext(context);
 }
@@ -293,6 +324,7 @@ int main(void)
         cmocka_unit_test(points_needles_and_giants_have_finite_scores),
         cmocka_unit_test(what_cannot_be_judged_is_refused),
         cmocka_unit_test(unused_positions_do_not_count),
+        cmocka_unit_test(the_end_is_reported_even_when_the_caller_did_nothing),
         cmocka_unit_test(cancelling_leaves_nothing_and_progress_only_grows),
         cmocka_unit_test(each_refused_allocation_is_told_and_leaks_nothing),
     };
