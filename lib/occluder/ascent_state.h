@@ -30,7 +30,8 @@ typedef struct pvtAscent {
     size_t next;         ///< sight that comes next
     float softness;      ///< [px]
     float reach;         ///< [vx] of a step
-    bool isShell;        ///< most triangles had walls on both sides when they settled once
+    int iterations;      ///< steps of a climb
+    bool isShell;        ///< most triangles are between walls, or were when they settled once
 } pvtAscent;
 
 /// Adds the mesh's positions [wu] to the corners of `set`, each anchored where it is.
@@ -46,7 +47,9 @@ void pvtAscent_Prune(pvtContext* context, pvtAscent* ascent, int count);
 /// Adds up to `count` triangles to the edges behind which there is most to hide; they start as
 /// slivers. Uses the puller's last pull, with its edges.
 void pvtAscent_Grow(pvtAscent* ascent, int count);
-/// All climbs and cycles; `set` is the best then, and inside.
+/// Whether the inside is no deeper than a wall's around most of the area of `set`.
+bool pvtAscent_IsBetweenWalls(const pvtAscent* ascent);
+/// All climbs and cycles, from `set` as the first start; `set` is the best then, and inside.
 pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent);
 /// Pulls with the sights that come next, and moves all corners by a step.
 void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges);

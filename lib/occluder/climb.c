@@ -36,6 +36,7 @@ static const Leg climb[LEGS] = {{0.55, 120.0F, 2.3F, 3.0F, 1.8F, 0.0, 1.0},
 static const Leg crossing = {1.4, 60.0F, 4.5F, 2.0F, 3.0F, 0.0, 0.7};
 static const Leg cycle = {1.4, 60.0F, 4.5F, 2.0F, 3.0F, 0.3, 0.7};
 
+static const double SHELL_SHARE = 1.6;    // of the iterations that there are elsewhere
 static const double GROWTH = 0.35;        // triangles added in a cycle, as part of the budget
 static const float JUDGE_SOFTNESS = 0.6F; // [px]
 static const float LATE_SOFTNESS = 12.0F; // [px] below which contacts are looked for more closely
@@ -160,7 +161,7 @@ static void BeginLeg(pvtAscent* ascent, const Leg* leg)
 
 static int GetSteps(const pvtAscent* ascent, const Leg* leg)
 {
-    const int steps = (int)(leg->share * ascent->options->iterations);
+    const int steps = (int)(leg->share * ascent->iterations);
     return steps > 1 ? steps : 1;
 }
 
@@ -230,6 +231,14 @@ static int CountSteps(const pvtAscent* ascent)
     return steps;
 }
 
+// Where the first start is between walls, climbs are longer.
+static void PlanSteps(pvtAscent* ascent)
+{
+    ascent->isShell = pvtAscent_IsBetweenWalls(ascent);
+    ascent->iterations = (int)((ascent->isShell ? SHELL_SHARE : 1.0) * ascent->options->iterations);
+    ascent->allSteps = CountSteps(ascent);
+}
+
 static pvtStatus RunClimb(pvtContext* context, pvtAscent* ascent, int start, bool* goesOn)
 {
     ascent->next = ascent->sights.count * (size_t)start / (size_t)ascent->options->startCount;
@@ -296,7 +305,7 @@ pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
 {
     bool goesOn = true;
     ascent->bestWorth = -HUGE_VAL;
-    ascent->allSteps = CountSteps(ascent);
+    PlanSteps(ascent);
     pvtStatus status = TryMesh(context, ascent->options->mesh, ascent);
     if (status == PVT_OK) {
         status = TryMesh(context, ascent->options->flat, ascent);

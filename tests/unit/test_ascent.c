@@ -524,6 +524,45 @@ static void large_triangles_may_come_up_to_the_surface_as_well(void** state)
     DestroyTestContext(context);
 }
 
+// A right triangle parallel to the x and y axes.
+static void AddLevel(float x, float y, float z, float side, pvtTriangleSet* set)
+{
+    const float places[3][3] = {{x, y, z}, {x + side, y, z}, {x, y + side, z}};
+    uint32_t corners[3];
+    for (int k = 0; k < 3; ++k) {
+        corners[k] = pvtTriangleSet_AddCorner(set, places[k], false);
+    }
+    pvtTriangleSet_AddTriangle(set, corners, 0);
+}
+
+static void most_of_a_start_lies_between_walls_or_not(void** state)
+{
+    (void)state;
+    enum { LENGTH = 192, WALL = 2, BLOCK = 24 };
+    pvtContext* context = CreateTestContext(2);
+    pvtBitGrid grid;
+    MakeEmptyGrid(context, LENGTH, LENGTH, 40, &grid);
+    SetBox(&grid, (int[]){4, 4, 8}, (int[]){LENGTH / 2, LENGTH - 4, 8 + WALL});
+    SetBox(&grid, (int[]){LENGTH / 2, 4, 8}, (int[]){LENGTH - 4, LENGTH - 4, 8 + BLOCK});
+    pvtAscent ascent = {.frame = grid.frame};
+    CHECK_OK(context, pvtCreateField(context, &grid, NULL, 256, &ascent.field));
+    CHECK_OK(context, pvtCreateTriangleSet(context, 12, 4, &ascent.set));
+    assert_false(pvtAscent_IsBetweenWalls(&ascent)); // nothing is not between walls
+    AddLevel(8, 8, 9, 30, &ascent.set);
+    assert_true(pvtAscent_IsBetweenWalls(&ascent));
+    AddLevel(110, 8, 20, 20, &ascent.set);
+    assert_true(pvtAscent_IsBetweenWalls(&ascent));
+    // By area, and from just below a surface as well.
+    AddLevel(110, 60, 9, 50, &ascent.set);
+    assert_false(pvtAscent_IsBetweenWalls(&ascent));
+    AddLevel(8, 60, 9, 60, &ascent.set);
+    assert_true(pvtAscent_IsBetweenWalls(&ascent));
+    pvtTriangleSet_Free(context, &ascent.set);
+    pvtField_Free(context, &ascent.field);
+    pvtBitGrid_Free(context, &grid);
+    DestroyTestContext(context);
+}
+
 static void what_the_test_finds_inside_passes_the_check(void** state)
 {
     (void)state;
@@ -635,6 +674,7 @@ int main(void)
         cmocka_unit_test(triangles_cross_where_they_pass_through_each_other),
         cmocka_unit_test(triangles_may_come_up_to_the_surface_and_no_farther),
         cmocka_unit_test(large_triangles_may_come_up_to_the_surface_as_well),
+        cmocka_unit_test(most_of_a_start_lies_between_walls_or_not),
         cmocka_unit_test(what_the_test_finds_inside_passes_the_check),
         cmocka_unit_test(an_ascent_keeps_to_its_budget_and_hides_nearly_all_of_a_cube),
         cmocka_unit_test(threads_do_not_change_an_ascent),
