@@ -4,7 +4,12 @@
 // all before any is taken, so that the outcome depends on no order.
 #include "shell.h"
 
-enum { BLOCK = 64, MIN_WORDS = 128, MIN_LAYERS = 4 };
+enum {
+    FULL_STEPS = 2, // after which most voxels are done
+    BLOCK = 64,
+    MIN_WORDS = 128,
+    MIN_LAYERS = 4
+};
 
 // Voxels of one word that may take cells in this step.
 typedef struct Woken {
@@ -19,7 +24,7 @@ typedef struct Race {
     uint8_t* wokenBlocks; // whether there is one in BLOCK words
     Woken* list;          // those of this step
     size_t listCount;     // [words]
-    pvtWaves* next;       // what they take
+    pvtWaves* next;       // what they take; in a step of all, what all have then
 } Race;
 
 // Several workers may wake the same voxel.
@@ -97,6 +102,24 @@ PVT_IN_CLONES pvtWaves FindStep(const pvtShell* shell, const pvtShellRow rows[PV
 static bool IsNone(pvtWaves waves)
 {
     return (waves.outside | waves.inside) == 0;
+}
+
+// A step of all voxels, from one set of waves to another: next to nobody is asleep yet.
+PVT_IN_CLONES void MoveVoxel(void* task, const pvtShellRow rows[PVT_SHELL_ROWS], int x,
+                             size_t place)
+{
+    const Race* race = task;
+    const pvtWaves here = race->shell->waves[place];
+    const pvtWaves step = FindStep(race->shell, rows, x, place);
+    race->next[place] = (pvtWaves){here.outside | step.outside, here.inside | step.inside};
+}
+
+PVT_VECTOR_CLONES
+static void MoveLayers(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const Race* race = taskData;
+    pvtShell_VisitLayers(race->shell, begin, end, taskData, MoveVoxel);
 }
 
 PVT_IN_CLONES void WakeVoxel(void* task, const pvtShellRow rows[PVT_SHELL_ROWS], int x,
@@ -219,6 +242,12 @@ static pvtStatus Run(pvtContext* context, Race* race)
 {
     const size_t layers = (size_t)race->shell->touched->voxels.frame.size[2];
     pvtParallelFor(context, StartLayers, layers, MIN_LAYERS, race);
+    for (int i = 0; i < FULL_STEPS; ++i) {
+        pvtParallelFor(context, MoveLayers, layers, MIN_LAYERS, race);
+        pvtWaves* const waves = race->shell->waves;
+        race->shell->waves = race->next;
+        race->next = waves;
+    }
     pvtParallelFor(context, WakeLayers, layers, MIN_LAYERS, race);
     for (ListWoken(race); race->listCount > 0 && !pvtIsCancelled(context); ListWoken(race)) {
         pvtParallelFor(context, StepVoxels, race->listCount, MIN_WORDS, race);
