@@ -17,13 +17,16 @@
     "bring the mesh nearer to its origin, or try --separate, which keeps each mesh's own "         \
     "coordinates"
 
+enum { FEW_TRIANGLES = 16 }; // of a budget that cannot be expected to hide much
+
+static const double LITTLE_SHARE = 0.2;     // of what can be hidden: less is told
 static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
 static const double COARSE_STEP = 0.25;     // [vx]
 static const double SAFE_SHARE = 0.8; // of the voxels: with more, that of the measure is not small
 
 // A strict interior may be a small part of what the mesh hides: a chair's legs are all surface.
 // Then recall is low whatever the budget, and only other options help.
-static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
+static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build, bool* isThin)
 {
     pvtBox3 bounds;
     double hidden = 0.0;
@@ -35,7 +38,8 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
     }
     const pvtMeasureGridOptions options = {&build->views, &bounds, PVT_MEASURE_SIZE};
     const pvtStatus status = pvtMeasureGrid(context, &options, &build->solid.inside, NULL, &hidden);
-    if (status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden) {
+    *isThin = status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden;
+    if (*isThin) {
         pvtLog(
             context, PVT_LOG_WARNING,
             "only %.1f %% of what the mesh hides lies strictly inside or flat on it at %d voxels, "
@@ -44,6 +48,26 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build)
             100.0 * build->stats.measureOfSolid / hidden, build->stats.resolution);
     }
     return status;
+}
+
+// Holes all through a solid leave nothing large that few triangles could hide. Where openings or
+// thin parts were told of before, so was what helps.
+static void WarnOfLittle(pvtContext* context, const pvtBuild* build)
+{
+    const pvtBuildStats* stats = &build->stats;
+    const pvtRemedy* told = &build->solid.remedy;
+    if (told->terrain || told->ground || told->smallestHole > 0.0 ||
+        build->options->budget < FEW_TRIANGLES ||
+        stats->measure >= LITTLE_SHARE * stats->measureOfSolid) {
+        return;
+    }
+    pvtLog(context, PVT_LOG_WARNING,
+           "%zu triangles hide only %.1f %% of what all of the inside does: it is thin, or full of "
+           "holes; --smallest-hole D closes holes narrower than D, %s, and a larger --budget hides "
+           "more",
+           build->occluder.mesh.triangleCount, 100.0 * stats->measure / stats->measureOfSolid,
+           stats->tolerance > 0.0 ? "a lower --resolution those that are narrower than a voxel"
+                                  : "--tolerance 1vx spans those that are narrower than a voxel");
 }
 
 // The promise, kept by every triangle.
@@ -129,8 +153,12 @@ pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
     if (status == PVT_OK) {
         status = pvtMeasureCeiling(context, build);
     }
+    bool isThin = false;
     if (status == PVT_OK) {
-        status = CompareWithMesh(context, build);
+        status = CompareWithMesh(context, build, &isThin);
+    }
+    if (status == PVT_OK && !isThin) {
+        WarnOfLittle(context, build);
     }
     return status;
 }

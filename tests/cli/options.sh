@@ -140,6 +140,24 @@ holds "errors are objects too, with the exit code" node -e '
     const lines = require("fs").readFileSync("err", "utf8").trimEnd().split("\n").map(JSON.parse);
     const line = lines.at(-1);
     process.exit(line.level === "error" && line.exit === 2 && /missing.glb/.test(line.text) ? 0 : 1)'
+# Rods with gaps between them: few triangles hide little, unless the gaps count as closed.
+node -e '
+    const rods = 8;
+    let text = "";
+    for (let i = 0; i < rods * rods; ++i) {
+        for (let k = 0; k < 8; ++k)
+            text += `v ${i % rods * 2 + (k & 1)} ${2 * (i / rods | 0) + (k >> 1 & 1)} ${20 * (k >> 2)}\n`;
+        for (const face of [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]])
+            text += `f ${face.map(corner => corner + 8 * i).join(" ")}\n`;
+    }
+    require("fs").writeFileSync("rods.obj", text);'
+rods=(generate rods.obj "${quick[@]}" --resolution 64 -o out.glb)
+expect 0 "16 triangles hide only" "${rods[@]}" --budget 16
+expect 0 "" "${rods[@]}" --budget 16 --smallest-hole 1.5
+holds "nothing is told where much is hidden" test -z "$(grep "hide only" err)"
+expect 0 "" "${rods[@]}" --budget 15
+holds "nor where little was asked for" test -z "$(grep "hide only" err)"
+
 if command -v script >/dev/null; then
     TERM=xterm script -qec "'$PARAVENT' generate '$boulder' --resolution 64 --views '$here/one_view.txt' -o out.glb" /dev/null \
         </dev/null >terminal 2>&1
