@@ -3,6 +3,7 @@
 #ifndef PVT_OCCLUDER_ASCENT_H
 #define PVT_OCCLUDER_ASCENT_H
 
+#include "enough.h"
 #include "inside.h"
 #include "sheets.h"
 
@@ -20,11 +21,11 @@ typedef struct pvtAscentOptions {
     const size_t* startEnds; ///< of the occluder's polygons, where those of each start end
     int startCount;          ///< 1 or more: there is a climb from each
     int iterations;          ///< steps of all corners in each
-    int cycles;      ///< times that triangles are added to it and the least useful taken away again
-    int sights;      ///< views to learn from
-    int batch;       ///< of these that a step looks at, 1 to 64
-    int polish;      ///< steps that follow the exact test, at last
-    double deadline; ///< on pvtGetSeconds' clock: ends the steps; 0: none
+    int cycles; ///< times that triangles are added to it and the least useful taken away again
+    int sights; ///< views to learn from
+    int batch;  ///< of these that a step looks at, 1 to 64
+    int polish; ///< steps that follow the exact test, at last
+    pvtEnough enough; ///< ends the steps
 } pvtAscentOptions;
 
 enum { PVT_MOST_ASCENT = 512 };

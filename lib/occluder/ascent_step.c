@@ -106,7 +106,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .sights = efforts[effort].sights,
         .batch = efforts[effort].batch,
         .polish = efforts[effort].polish,
-        .deadline = pvtGetDeadline(build)};
+        .enough = pvtGetEnough(build)};
     if (status == PVT_OK) {
         status = pvtAscendOccluder(context, &options, &build->occluder);
     }

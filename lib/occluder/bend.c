@@ -363,10 +363,10 @@ static pvtStatus Climb(pvtContext* context, Bending* bending)
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
-        if (options->deadline > 0.0 && pvtGetSeconds() > options->deadline) {
+        const char* cause = pvtEnough_FindEnd(&options->enough);
+        if (cause != NULL) {
             pvtLog(context, PVT_LOG_WARNING,
-                   "the deadline ended the last refinement after %.0f %% of its trials",
-                   100.0 * done);
+                   "%s ended the last refinement after %.0f %% of its trials", cause, 100.0 * done);
             break;
         }
         pvtReportProgress(context, done);

@@ -2,6 +2,7 @@
 #ifndef PVT_OCCLUDER_BEND_H
 #define PVT_OCCLUDER_BEND_H
 
+#include "enough.h"
 #include "inside.h"
 
 #include <paravent/occluder.h>
@@ -12,9 +13,9 @@ typedef struct pvtBendOptions {
     pvtBox3 bounds;          ///< [wu] what the masks span
     const pvtInsideTest* inside;
     uint64_t seed;
-    int trials;      ///< random changes that are tried
-    int sweeps;      ///< after them: corners that grow, by a voxel in the last one
-    double deadline; ///< on pvtGetSeconds' clock: ends the trials; 0: none
+    int trials;       ///< random changes that are tried
+    int sweeps;       ///< after them: corners that grow, by a voxel in the last one
+    pvtEnough enough; ///< ends the trials
 } pvtBendOptions;
 
 /// Moves the corners of the occluder's triangles freely, and lets triangles share other corners,

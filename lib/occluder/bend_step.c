@@ -114,7 +114,7 @@ static pvtStatus Bend(pvtContext* context, pvtBuild* build)
                               .seed = build->options->seed,
                               .trials = efforts[effort].trials,
                               .sweeps = sweeps > 1 ? sweeps : 1,
-                              .deadline = pvtGetDeadline(build)};
+                              .enough = pvtGetEnough(build)};
     pvtViewSet more;
     pvtStatus status = MakeMoreViews(context, build, &more);
     if (status == PVT_OK) {

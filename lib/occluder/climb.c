@@ -165,15 +165,15 @@ static int GetSteps(const pvtAscent* ascent, const Leg* leg)
     return steps > 1 ? steps : 1;
 }
 
-// False when time is up.
+// False when it is to end.
 static bool GoOn(pvtContext* context, const pvtAscent* ascent)
 {
-    const pvtAscentOptions* options = ascent->options;
     const double share = (double)ascent->steps / ascent->allSteps;
     pvtReportProgress(context, share < 1.0 ? share : 1.0);
-    if (options->deadline > 0.0 && pvtGetSeconds() > options->deadline) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the deadline ended the refinement after %.0f %% of its steps", 100.0 * share);
+    const char* cause = pvtEnough_FindEnd(&ascent->options->enough);
+    if (cause != NULL) {
+        pvtLog(context, PVT_LOG_WARNING, "%s ended the refinement after %.0f %% of its steps",
+               cause, 100.0 * share);
         return false;
     }
     return !pvtIsCancelled(context);

@@ -103,10 +103,10 @@ static pvtStatus Climb(pvtContext* context, Refinement* refinement, double end, 
             return pvtFailCancelled(context);
         }
         const double done = (double)refinement->next / total;
-        if (refinement->options->deadline > 0.0 &&
-            pvtGetSeconds() > refinement->options->deadline) {
-            pvtLog(context, PVT_LOG_WARNING,
-                   "the deadline ended the refinement after %.0f %% of its trials", 100.0 * done);
+        const char* cause = pvtEnough_FindEnd(&refinement->options->enough);
+        if (cause != NULL) {
+            pvtLog(context, PVT_LOG_WARNING, "%s ended the refinement after %.0f %% of its trials",
+                   cause, 100.0 * done);
             *stop = true;
             return PVT_OK;
         }

@@ -2,6 +2,7 @@
 #ifndef PVT_OCCLUDER_REFINE_H
 #define PVT_OCCLUDER_REFINE_H
 
+#include "enough.h"
 #include "sheets.h"
 
 typedef struct pvtRefineOptions {
@@ -10,8 +11,8 @@ typedef struct pvtRefineOptions {
     pvtBox3 bounds;            ///< [wu] what the masks span
     const pvtSheetSet* sheets; ///< where panels may lie besides the volume; borrowed; may be null
     uint64_t seed;
-    int trials;      ///< changes that are tried
-    double deadline; ///< on pvtGetSeconds' clock: ends the trials; 0: none
+    int trials;       ///< changes that are tried
+    pvtEnough enough; ///< ends the trials
 } pvtRefineOptions;
 
 /// Changes panels at random for as long as that raises the measure: points move as far as the

@@ -71,10 +71,10 @@ static pvtStatus TakeStart(pvtContext* context, pvtBuild* build, int start, pvtO
     return status;
 }
 
-static bool IsTimeUp(const pvtBuild* build)
+static bool IsEnough(const pvtBuild* build)
 {
-    const double deadline = pvtGetDeadline(build);
-    return deadline > 0.0 && pvtGetSeconds() > deadline;
+    const pvtEnough enough = pvtGetEnough(build);
+    return pvtEnough_FindEnd(&enough) != NULL;
 }
 
 // What a list of views chooses is the same each time.
@@ -84,7 +84,7 @@ static pvtStatus TakeStarts(pvtContext* context, pvtBuild* build)
     const int count = GetStartCount(build);
     pvtOccluder starts[PVT_MOST_STARTS] = {0};
     pvtStatus status = PVT_OK;
-    for (int s = 0; s < count && status == PVT_OK && (s == 0 || !IsTimeUp(build)); ++s) {
+    for (int s = 0; s < count && status == PVT_OK && (s == 0 || !IsEnough(build)); ++s) {
         if (s > 0 && isSame) {
             starts[s] = starts[0];
         } else {

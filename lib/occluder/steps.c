@@ -373,9 +373,13 @@ pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build)
     return status;
 }
 
-double pvtGetDeadline(const pvtBuild* build)
+pvtEnough pvtGetEnough(const pvtBuild* build)
 {
-    return build->options->deadline > 0.0 ? build->started + build->options->deadline : 0.0;
+    const pvtBuildOptions* options = build->options;
+    return (pvtEnough){.deadline =
+                           options->deadline > 0.0 ? build->started + options->deadline : 0.0,
+                       .isEnough = options->isEnough,
+                       .user = options->enoughUser};
 }
 
 static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
@@ -391,7 +395,7 @@ static pvtStatus RunRefinement(pvtContext* context, pvtBuild* build)
                                       .sheets = &build->sheets,
                                       .seed = build->options->seed,
                                       .trials = trials[build->options->effort],
-                                      .deadline = pvtGetDeadline(build)};
+                                      .enough = pvtGetEnough(build)};
     return pvtRefineOccluder(context, &options, &build->volume, &build->candidates,
                              &build->occluder);
 }

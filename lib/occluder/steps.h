@@ -3,6 +3,7 @@
 #ifndef PVT_OCCLUDER_STEPS_H
 #define PVT_OCCLUDER_STEPS_H
 
+#include "enough.h"
 #include "inside.h"
 #include "sheets.h"
 
@@ -76,8 +77,8 @@ static inline pvtViewOptions pvtGetViewOptions(const pvtBuild* build)
 bool pvtMayAscend(const pvtBuild* build);
 /// Where triangles may lie.
 pvtInterior pvtGetInterior(const pvtBuild* build);
-/// On pvtGetSeconds' clock; 0: none.
-double pvtGetDeadline(const pvtBuild* build);
+/// When the build's refinement is to end.
+pvtEnough pvtGetEnough(const pvtBuild* build);
 /// How many steps or sweeps there are: fewer for more triangles, so that the time stays about the
 /// same.
 static inline int pvtSpreadEffort(int count, int triangles)

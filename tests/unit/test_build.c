@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "voxel_shapes.h"
 
+#include <limits.h>
 #include <math.h>
 #include <paravent/evaluate.h>
 #include <paravent/occluder.h>
@@ -497,6 +498,58 @@ static void a_cancelled_build_leaves_nothing(void** state)
     }
 }
 
+// Says enough from the question after so many on.
+typedef struct Patience {
+    int questions, asked;
+} Patience;
+
+static bool IsEnough(void* user)
+{
+    Patience* patience = user;
+    return patience->asked++ >= patience->questions;
+}
+
+static void BuildPatiently(pvtContext* context, Patience* patience, pvtOccluder* occluder,
+                           pvtBuildStats* stats)
+{
+    pvtMesh torus;
+    MakeTorus(context, &torus);
+    pvtBuildOptions options = GetQuickOptions();
+    options.isEnough = patience != NULL ? IsEnough : NULL;
+    options.enoughUser = patience;
+    CHECK_OK(context, pvtBuildOccluder(context, &options, &torus, occluder, stats));
+    pvtMesh_Free(context, &torus);
+}
+
+static void what_the_caller_calls_enough_is_kept(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtOccluder whole, part;
+    pvtBuildStats stats;
+    Patience patience = {INT_MAX, 0};
+    BuildPatiently(context, NULL, &whole, &stats);
+    BuildPatiently(context, &patience, &part, &stats);
+    assert_true(patience.asked > 200); // each of its steps is one
+    assert_int_equal(part.mesh.positionCount, whole.mesh.positionCount);
+    assert_memory_equal(part.mesh.positions, whole.mesh.positions,
+                        whole.mesh.positionCount * sizeof(pvtVec3));
+    pvtOccluder_Free(context, &part);
+    const int all = patience.asked;
+    const double most = stats.measure;
+    for (int questions = 0; questions < all; questions += 1 + 3 * questions) {
+        patience = (Patience){questions, 0};
+        BuildPatiently(context, &patience, &part, &stats);
+        assert_true(patience.asked > questions && patience.asked < questions + 8);
+        assert_true(part.mesh.triangleCount >= 1 && part.mesh.triangleCount <= 64);
+        assert_true(stats.outside == 0);
+        assert_true(stats.measure > 0.7 * most);
+        pvtOccluder_Free(context, &part);
+    }
+    pvtOccluder_Free(context, &whole);
+    DestroyTestContext(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -514,6 +567,7 @@ int main(void)
         cmocka_unit_test(an_error_sets_the_voxel_size_that_keeps_it),
         cmocka_unit_test(a_sliver_has_nothing_inside_and_the_message_names_remedies),
         cmocka_unit_test(a_cancelled_build_leaves_nothing),
+        cmocka_unit_test(what_the_caller_calls_enough_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

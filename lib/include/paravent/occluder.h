@@ -145,6 +145,11 @@ typedef struct pvtBuildOptions {
     uint64_t seed;          ///< default 1
     double deadline; ///< [s] > 0: when so much time has passed since the start, refinement ends
                      ///< with the best so far, which then depends on the machine; default 0
+    /// Null: never. Asked now and then from the first selected polygons on, by the thread that
+    /// builds (with pvtBuildSeparateOccluders by several at once); true ends refinement as the
+    /// deadline does. For a button that says enough: cancelling leaves nothing.
+    pvtCancelFcn* isEnough;
+    void* enoughUser; ///< handed to isEnough
     /// Null: slices are made on the CPU. Else called once the voxel mesh is there, to make the
     /// slicer that the build uses; `release` ends it.
     pvtStatus (*createSlicer)(pvtContext* context, void* user, const pvtGridFrame* frame,
