@@ -11,7 +11,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { MESSAGE_SIZE = 2048, ALIGNMENT = 64, SCOPE_SIZE = 24, STAGE_SIZE = 64 };
+enum { MESSAGE_SIZE = 2048, ALIGNMENT = 64, SCOPE_SIZE = 24, STAGE_SIZE = 64, MOST_TOLD = 16 };
 
 struct pvtContext {
     pvtContextDef def;
@@ -19,7 +19,9 @@ struct pvtContext {
     pthread_mutex_t messageLock;
     char message[MESSAGE_SIZE];
     _Atomic pvtStatus status;
-    char scope[SCOPE_SIZE]; // what the stages belong to; "" for nothing
+    char scope[SCOPE_SIZE];      // what the stages belong to; "" for nothing
+    const char* told[MOST_TOLD]; // warnings in the scopes since there was none
+    int toldCount;
     char stage[STAGE_SIZE];
     double reported;
     atomic_size_t held, peak;
@@ -149,19 +151,48 @@ pvtStatus pvtFail(pvtContext* context, pvtStatus status, const char* format, ...
     return status;
 }
 
-void pvtLog(pvtContext* context, pvtLogLevel level, const char* format, ...)
+static void LogText(pvtContext* context, pvtLogLevel level, const char* format, va_list arguments)
 {
-    if (context->def.log == NULL) {
-        return;
-    }
     char text[MESSAGE_SIZE];
     const bool isScoped = context->scope[0] != '\0';
     const int used = snprintf(text, sizeof text, "%s%s", context->scope, isScoped ? ": " : "");
-    va_list arguments;
-    va_start(arguments, format);
     (void)vsnprintf(text + used, sizeof text - (size_t)used, format, arguments);
-    va_end(arguments);
     context->def.log(level, text, context->def.user);
+}
+
+void pvtLog(pvtContext* context, pvtLogLevel level, const char* format, ...)
+{
+    if (context->def.log != NULL) {
+        va_list arguments;
+        va_start(arguments, format);
+        LogText(context, level, format, arguments);
+        va_end(arguments);
+    }
+}
+
+// Texts are known by where they lie. Without a scope nothing is kept.
+static bool IsToldBefore(pvtContext* context, const char* format)
+{
+    for (int i = 0; i < context->toldCount; ++i) {
+        if (context->told[i] == format) {
+            return true;
+        }
+    }
+    if (context->scope[0] != '\0' && context->toldCount < MOST_TOLD) {
+        context->told[context->toldCount++] = format;
+    }
+    return false;
+}
+
+void pvtWarnOnce(pvtContext* context, const char* format, ...)
+{
+    const pvtLogLevel level = IsToldBefore(context, format) ? PVT_LOG_INFO : PVT_LOG_WARNING;
+    if (context->def.log != NULL) {
+        va_list arguments;
+        va_start(arguments, format);
+        LogText(context, level, format, arguments);
+        va_end(arguments);
+    }
 }
 
 // Reserves `size` bytes of the limit; false when they do not fit.
@@ -274,6 +305,7 @@ void pvtSetStageScope(pvtContext* context, const char* format, ...)
     va_start(arguments, format);
     (void)vsnprintf(context->scope, SCOPE_SIZE, format, arguments);
     va_end(arguments);
+    context->toldCount = context->scope[0] != '\0' ? context->toldCount : 0;
 }
 
 void pvtBeginStage(pvtContext* context, const char* name)

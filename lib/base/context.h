@@ -13,6 +13,12 @@ pvtStatus pvtFail(pvtContext* context, pvtStatus status, const char* format, ...
 void pvtLog(pvtContext* context, pvtLogLevel level, const char* format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/// A warning about the mesh, which each level of a ladder would repeat: from one scope to the next
+/// the same text is a warning the first time and information after that. On the calling thread of
+/// a stage only.
+void pvtWarnOnce(pvtContext* context, const char* format, ...)
+    __attribute__((format(printf, 2, 3)));
+
 /// Zeroed, aligned to 64 bytes. Null after pvtFail with PVT_LIMIT or PVT_OUT_OF_MEMORY: return
 /// pvtContext_GetStatus. count × size may not overflow: that is PVT_LIMIT. A count of 0 gives a
 /// block that may be freed. Safe on any thread.

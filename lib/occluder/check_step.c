@@ -40,8 +40,8 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build, bool* isT
     const pvtStatus status = pvtMeasureGrid(context, &options, &build->solid.inside, NULL, &hidden);
     *isThin = status == PVT_OK && build->stats.measureOfSolid < MIN_STRICT_SHARE * hidden;
     if (*isThin) {
-        pvtLog(
-            context, PVT_LOG_WARNING,
+        pvtWarnOnce(
+            context,
             "only %.1f %% of what the mesh hides lies strictly inside or flat on it at %d voxels, "
             "and an occluder can hide no more; --tolerance 1vx uses the touched voxels too, a "
             "higher --resolution finds thinner parts",
@@ -61,13 +61,14 @@ static void WarnOfLittle(pvtContext* context, const pvtBuild* build)
         stats->measure >= LITTLE_SHARE * stats->measureOfSolid) {
         return;
     }
-    pvtLog(context, PVT_LOG_WARNING,
-           "%zu triangles hide only %.1f %% of what all of the inside does: it is thin, or full of "
-           "holes; --smallest-hole D closes holes narrower than D, %s, and a larger --budget hides "
-           "more",
-           build->occluder.mesh.triangleCount, 100.0 * stats->measure / stats->measureOfSolid,
-           stats->tolerance > 0.0 ? "a lower --resolution those that are narrower than a voxel"
-                                  : "--tolerance 1vx spans those that are narrower than a voxel");
+    pvtWarnOnce(
+        context,
+        "%zu triangles hide only %.1f %% of what all of the inside does: it is thin, or full of "
+        "holes; --smallest-hole D closes holes narrower than D, %s, and a larger --budget hides "
+        "more",
+        build->occluder.mesh.triangleCount, 100.0 * stats->measure / stats->measureOfSolid,
+        stats->tolerance > 0.0 ? "a lower --resolution those that are narrower than a voxel"
+                               : "--tolerance 1vx spans those that are narrower than a voxel");
 }
 
 // The promise, kept by every triangle.
@@ -122,16 +123,17 @@ static void WarnOfStorage(pvtContext* context, const pvtBuild* build)
     const pvtBuildStats* stats = &build->stats;
     const Storage storage = FindStorage(build);
     if (stats->outside > 0) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the check found %" PRIu64 " voxel%s in which the occluder reaches where it may "
-               "not; " STORAGE ": " REMEDY,
-               stats->outside, stats->outside == 1 ? "" : "s", storage.farthest, storage.step,
-               stats->voxelSize);
+        pvtWarnOnce(context,
+                    "the check found %" PRIu64
+                    " voxel%s in which the occluder reaches where it may not; " STORAGE ": " REMEDY,
+                    stats->outside, stats->outside == 1 ? "" : "s", storage.farthest, storage.step,
+                    stats->voxelSize);
     } else if (storage.step > COARSE_STEP * stats->voxelSize) {
-        pvtLog(context, PVT_LOG_WARNING,
-               STORAGE
-               ", so that corners lie where they can rather than where they hide most: " REMEDY,
-               storage.farthest, storage.step, stats->voxelSize);
+        pvtWarnOnce(
+            context,
+            STORAGE
+            ", so that corners lie where they can rather than where they hide most: " REMEDY,
+            storage.farthest, storage.step, stats->voxelSize);
     }
 }
 

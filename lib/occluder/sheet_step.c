@@ -210,14 +210,16 @@ pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build, const uint64_t* o
     stats->errorBound = fmax(stats->errorBound, stats->deviation);
     const pvtStatus status = stats->outside > 0 ? CheckPanels(context, build, outside) : PVT_OK;
     if (status == PVT_OK && build->deviation > BOUND) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the mesh has no inside at %d voxels: all panels lie on its surface, which is not "
-               "flat, and stray from it by up to %.3g; a higher --resolution brings them closer",
-               stats->resolution, stats->deviation);
+        pvtWarnOnce(
+            context,
+            "the mesh has no inside at %d voxels: all panels lie on its surface, which is not "
+            "flat, and stray from it by up to %.3g; a higher --resolution brings them closer",
+            stats->resolution, stats->deviation);
     } else if (status == PVT_OK && build->solid.strictCount == 0) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the mesh has no inside at %d voxels: all panels lie on its surface, within %.3g",
-               stats->resolution, stats->deviation);
+        pvtWarnOnce(
+            context,
+            "the mesh has no inside at %d voxels: all panels lie on its surface, within %.3g",
+            stats->resolution, stats->deviation);
     }
     return status;
 }

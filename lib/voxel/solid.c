@@ -83,27 +83,31 @@ static void WarnWhenHollow(pvtContext* context, const pvtSolid* solid)
     const double percent = 100.0 * solid->insideFraction;
     const double voxels = remedy->smallestHole / solid->surface.frame.voxelSize;
     if (remedy->smallestHole > 0.0 && remedy->ground) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "
-               "open below and has other openings; --ground closes the bottom, and --smallest-hole "
-               "%g (%.1f voxels) the others, unless these are doors or windows",
-               percent, remedy->smallestHole, voxels);
+        pvtWarnOnce(
+            context,
+            "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "
+            "open below and has other openings; --ground closes the bottom, and --smallest-hole "
+            "%g (%.1f voxels) the others, unless these are doors or windows",
+            percent, remedy->smallestHole, voxels);
     } else if (remedy->smallestHole > 0.0) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the solid is hollow: only %.2g %% of the bounds is inside, because the surface has "
-               "openings; unless these are doors or windows, --smallest-hole %g (%.1f voxels) "
-               "closes them",
-               percent, remedy->smallestHole, voxels);
+        pvtWarnOnce(
+            context,
+            "the solid is hollow: only %.2g %% of the bounds is inside, because the surface has "
+            "openings; unless these are doors or windows, --smallest-hole %g (%.1f voxels) "
+            "closes them",
+            percent, remedy->smallestHole, voxels);
     } else if (remedy->ground) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "
-               "open below; --ground would close it",
-               percent);
+        pvtWarnOnce(
+            context,
+            "the solid is hollow: only %.2g %% of the bounds is inside, because the surface is "
+            "open below; --ground would close it",
+            percent);
     } else if (remedy->terrain) {
-        pvtLog(context, PVT_LOG_WARNING,
-               "the solid is hollow: only %.2g %% of the bounds is inside, but the surface looks "
-               "like a landscape; --terrain would fill what lies below",
-               percent);
+        pvtWarnOnce(
+            context,
+            "the solid is hollow: only %.2g %% of the bounds is inside, but the surface looks "
+            "like a landscape; --terrain would fill what lies below",
+            percent);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "append.h"
 #include "perspective.h"
 #include "voxel_shapes.h"
+#include "warnings.h"
 
 #include <string.h>
 
@@ -237,6 +238,59 @@ static void a_coarser_level_that_cannot_be_had_is_left_out_and_named(void** stat
     DestroyTestContext(context);
 }
 
+static int CountText(const char* text, const char* part)
+{
+    int count = 0;
+    for (const char* at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) {
+        ++count;
+    }
+    return count;
+}
+
+// A box without a floor.
+static void MakeHood(pvtContext* context, pvtMesh* mesh)
+{
+    MakeBoxMesh(context, (pvtVec3){0, 0, 0}, (pvtVec3){4, 2, 3}, mesh);
+    size_t kept = 0;
+    for (size_t t = 0; t < mesh->triangleCount; ++t) {
+        const uint32_t* corners = mesh->indices + 3 * t;
+        const double top = fmax(mesh->positions[corners[0]].y,
+                                fmax(mesh->positions[corners[1]].y, mesh->positions[corners[2]].y));
+        if (top > 0.0) {
+            memmove(mesh->indices + 3 * kept++, corners, sizeof(uint32_t[3]));
+        }
+    }
+    mesh->triangleCount = kept;
+    assert_int_equal(kept, 10);
+}
+
+static void what_is_said_of_the_mesh_is_said_once_a_ladder(void** state)
+{
+    (void)state;
+    Warnings warnings;
+    pvtContext* context = CreateWarningContext(&warnings);
+    pvtMesh hood;
+    MakeHood(context, &hood);
+    const pvtLadderOptions options = GetQuickOptions();
+    for (int run = 1; run <= 2; ++run) {
+        pvtLadder ladder;
+        CHECK_OK(context, pvtBuildLadder(context, &options, &hood, &ladder));
+        assert_true(ladder.count > 1);
+        assert_int_equal(CountText(warnings.text, "the solid is hollow"), run);
+        assert_int_equal(CountText(warnings.text, "LOD0: the solid is hollow"), run);
+        pvtLadder_Free(context, &ladder);
+    }
+    // Of occluders one after the other each is told of.
+    for (int run = 3; run <= 4; ++run) {
+        pvtOccluder occluder;
+        CHECK_OK(context, pvtBuildOccluder(context, &options.build, &hood, &occluder, NULL));
+        assert_int_equal(CountText(warnings.text, "the solid is hollow"), run);
+        pvtOccluder_Free(context, &occluder);
+    }
+    pvtMesh_Free(context, &hood);
+    DestroyTestContext(context);
+}
+
 static void the_finest_level_fails_by_its_name(void** state)
 {
     (void)state;
@@ -368,6 +422,7 @@ int main(void)
         cmocka_unit_test(the_default_errors_double_and_the_default_budgets_halve),
         cmocka_unit_test(distance_and_coverage_follow_the_formula),
         cmocka_unit_test(a_coarser_level_that_cannot_be_had_is_left_out_and_named),
+        cmocka_unit_test(what_is_said_of_the_mesh_is_said_once_a_ladder),
         cmocka_unit_test(the_finest_level_fails_by_its_name),
         cmocka_unit_test(contradictions_are_refused_by_name),
         cmocka_unit_test(threads_do_not_change_a_byte_of_any_level),
