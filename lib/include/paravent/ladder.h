@@ -25,6 +25,7 @@ typedef struct pvtScreenOptions {
 typedef struct pvtLadderOptions {
     /// What all levels share. `resolution` is of the finest level, and only when its error is 0;
     /// `tolerance` is of the finest level; `budget`, `error` and `deadline` are not looked at.
+    /// isEnough is asked in every level, and ends the refinement of that one.
     pvtBuildOptions build;
     pvtLength coarseTolerance; ///< of all levels but the finest; default 1 voxel
     int levelCount;            ///< 1 to PVT_MAX_LEVELS; default 4
