@@ -224,19 +224,26 @@ static void WatchProgress(const char* stage, double fraction, void* user)
     ++watch->reports;
 }
 
+static pvtContext* CreateWatchedContext(Watch* watch, pvtParallelForFcn* parallelFor)
+{
+    pvtContextDef def = pvtDefaultContextDef();
+    def.threadCount = 2;
+    def.parallelFor = parallelFor;
+    def.isCancelled = IsOutOfPatience;
+    def.progress = WatchProgress;
+    def.user = watch;
+    pvtContext* context = NULL;
+    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    return context;
+}
+
 static void cancelling_leaves_nothing_and_progress_only_grows(void** state)
 {
     (void)state;
     pvtMesh ball = CreateBall(20, 1.0, (pvtVec3){0, 0, 0});
     const pvtEvaluateOptions options = MakeOptions(16, 100, 32);
     Watch watch = {.patience = INT_MAX};
-    pvtContextDef def = pvtDefaultContextDef();
-    def.threadCount = 2;
-    def.isCancelled = IsOutOfPatience;
-    def.progress = WatchProgress;
-    def.user = &watch;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtContext* context = CreateWatchedContext(&watch, NULL);
     pvtEvaluation evaluation;
     CHECK_OK(context, pvtEvaluateOccluders(context, &options, &ball, &ball, 1, &evaluation));
     pvtEvaluation_Free(context, &evaluation);
@@ -266,13 +273,7 @@ static void the_end_is_reported_even_when_the_caller_did_nothing(void** state)
     pvtMesh ball = CreateBall(8, 1.0, (pvtVec3){0, 0, 0});
     const pvtEvaluateOptions options = MakeOptions(4, 10, 32);
     Watch watch = {.patience = INT_MAX};
-    pvtContextDef def = pvtDefaultContextDef();
-    def.threadCount = 2;
-    def.parallelFor = RunOnOtherWorker;
-    def.progress = WatchProgress;
-    def.user = &watch;
-    pvtContext* context = NULL;
-    assert_int_equal(pvtCreateContext(&def, &context), PVT_OK);
+    pvtContext* context = CreateWatchedContext(&watch, RunOnOtherWorker);
     pvtEvaluation evaluation;
     CHECK_OK(context, pvtEvaluateOccluders(context, &options, &ball, &ball, 1, &evaluation));
     pvtEvaluation_Free(context, &evaluation);
