@@ -153,6 +153,9 @@ pvtStatus pvtFail(pvtContext* context, pvtStatus status, const char* format, ...
 
 static void LogText(pvtContext* context, pvtLogLevel level, const char* format, va_list arguments)
 {
+    if (context->def.log == NULL) {
+        return;
+    }
     char text[MESSAGE_SIZE];
     const bool isScoped = context->scope[0] != '\0';
     const int used = snprintf(text, sizeof text, "%s%s", context->scope, isScoped ? ": " : "");
@@ -162,12 +165,10 @@ static void LogText(pvtContext* context, pvtLogLevel level, const char* format, 
 
 void pvtLog(pvtContext* context, pvtLogLevel level, const char* format, ...)
 {
-    if (context->def.log != NULL) {
-        va_list arguments;
-        va_start(arguments, format);
-        LogText(context, level, format, arguments);
-        va_end(arguments);
-    }
+    va_list arguments;
+    va_start(arguments, format);
+    LogText(context, level, format, arguments);
+    va_end(arguments);
 }
 
 // Texts are known by where they lie. Without a scope nothing is kept.
@@ -187,12 +188,10 @@ static bool IsToldBefore(pvtContext* context, const char* format)
 void pvtWarnOnce(pvtContext* context, const char* format, ...)
 {
     const pvtLogLevel level = IsToldBefore(context, format) ? PVT_LOG_INFO : PVT_LOG_WARNING;
-    if (context->def.log != NULL) {
-        va_list arguments;
-        va_start(arguments, format);
-        LogText(context, level, format, arguments);
-        va_end(arguments);
-    }
+    va_list arguments;
+    va_start(arguments, format);
+    LogText(context, level, format, arguments);
+    va_end(arguments);
 }
 
 // Reserves `size` bytes of the limit; false when they do not fit.
@@ -305,7 +304,9 @@ void pvtSetStageScope(pvtContext* context, const char* format, ...)
     va_start(arguments, format);
     (void)vsnprintf(context->scope, SCOPE_SIZE, format, arguments);
     va_end(arguments);
-    context->toldCount = context->scope[0] != '\0' ? context->toldCount : 0;
+    if (context->scope[0] == '\0') {
+        context->toldCount = 0;
+    }
 }
 
 void pvtBeginStage(pvtContext* context, const char* name)

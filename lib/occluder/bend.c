@@ -363,10 +363,7 @@ static pvtStatus Climb(pvtContext* context, Bending* bending)
         if (pvtIsCancelled(context)) {
             return pvtFailCancelled(context);
         }
-        const char* cause = pvtEnough_FindEnd(&options->enough);
-        if (cause != NULL) {
-            pvtLog(context, PVT_LOG_WARNING,
-                   "%s ended the last refinement after %.0f %% of its trials", cause, 100.0 * done);
+        if (pvtEnough_Ends(context, &options->enough, "last refinement", "trials", done)) {
             break;
         }
         pvtReportProgress(context, done);

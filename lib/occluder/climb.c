@@ -170,13 +170,8 @@ static bool GoOn(pvtContext* context, const pvtAscent* ascent)
 {
     const double share = (double)ascent->steps / ascent->allSteps;
     pvtReportProgress(context, share < 1.0 ? share : 1.0);
-    const char* cause = pvtEnough_FindEnd(&ascent->options->enough);
-    if (cause != NULL) {
-        pvtLog(context, PVT_LOG_WARNING, "%s ended the refinement after %.0f %% of its steps",
-               cause, 100.0 * share);
-        return false;
-    }
-    return !pvtIsCancelled(context);
+    return !pvtEnough_Ends(context, &ascent->options->enough, "refinement", "steps", share) &&
+           !pvtIsCancelled(context);
 }
 
 // How many triangles there are to be at a time of a leg, 0 to 1.

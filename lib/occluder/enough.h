@@ -21,4 +21,17 @@ static inline const char* pvtEnough_FindEnd(const pvtEnough* enough)
     return enough->isEnough != NULL && enough->isEnough(enough->user) ? "the caller" : NULL;
 }
 
+/// Whether work is to end, which is told then: what work, of which parts, and the share of them
+/// that is done.
+static inline bool pvtEnough_Ends(pvtContext* context, const pvtEnough* enough, const char* work,
+                                  const char* parts, double done)
+{
+    const char* cause = pvtEnough_FindEnd(enough);
+    if (cause != NULL) {
+        pvtLog(context, PVT_LOG_WARNING, "%s ended the %s after %.0f %% of its %s", cause, work,
+               100.0 * done, parts);
+    }
+    return cause != NULL;
+}
+
 #endif

@@ -103,10 +103,7 @@ static pvtStatus Climb(pvtContext* context, Refinement* refinement, double end, 
             return pvtFailCancelled(context);
         }
         const double done = (double)refinement->next / total;
-        const char* cause = pvtEnough_FindEnd(&refinement->options->enough);
-        if (cause != NULL) {
-            pvtLog(context, PVT_LOG_WARNING, "%s ended the refinement after %.0f %% of its trials",
-                   cause, 100.0 * done);
+        if (pvtEnough_Ends(context, &refinement->options->enough, "refinement", "trials", done)) {
             *stop = true;
             return PVT_OK;
         }

@@ -29,27 +29,18 @@ static bool IsDeep(const pvtAscent* ascent, const float point[3])
     return false;
 }
 
-static pvtVec3 GetCorner(const pvtTriangleSet* set, int triangle, int k)
-{
-    const float* corner = set->corners[set->triangles[triangle][k]];
-    return (pvtVec3){(double)corner[0], (double)corner[1], (double)corner[2]};
-}
-
-// The centres of the four triangles that the lines between an own triangle's midpoints cut it into,
-// as shares of its corners in sixths.
+// The centres of the four triangles that the lines between an own triangle's midpoints cut it into.
 static int CountThin(const pvtAscent* ascent, int triangle)
 {
-    static const int sixths[POINTS][3] = {{2, 2, 2}, {4, 1, 1}, {1, 4, 1}, {1, 1, 4}};
-    const pvtTriangleSet* set = &ascent->set;
+    static const float sixths[POINTS][3] = {{2, 2, 2}, {4, 1, 1}, {1, 4, 1}, {1, 1, 4}};
     int thin = 0;
     for (int i = 0; i < POINTS; ++i) {
-        float point[3] = {0};
+        pvtContact contact = {.triangle = triangle};
         for (int k = 0; k < 3; ++k) {
-            const float* corner = set->corners[set->triangles[triangle][k]];
-            for (int axis = 0; axis < 3; ++axis) {
-                point[axis] += (float)sixths[i][k] / 6.0F * corner[axis];
-            }
+            contact.shares[k] = sixths[i][k] / 6.0F;
         }
+        float point[3];
+        pvtGetContactPlace(&contact, &ascent->set, point);
         thin += IsDeep(ascent, point) ? 0 : 1;
     }
     return thin;
@@ -57,12 +48,12 @@ static int CountThin(const pvtAscent* ascent, int triangle)
 
 bool pvtAscent_IsBetweenWalls(const pvtAscent* ascent)
 {
-    const pvtTriangleSet* set = &ascent->set;
     double thin = 0.0, all = 0.0;
-    for (int t = 0; t < set->triangleCount; ++t) {
-        const pvtVec3 a = GetCorner(set, t, 0);
+    for (int t = 0; t < ascent->set.triangleCount; ++t) {
+        pvtVec3 corners[3];
+        pvtAscent_GetTriangle(ascent, t, corners);
         const double area =
-            pvtLength3(pvtCross(pvtSub(GetCorner(set, t, 1), a), pvtSub(GetCorner(set, t, 2), a)));
+            pvtLength3(pvtCross(pvtSub(corners[1], corners[0]), pvtSub(corners[2], corners[0])));
         thin += area * CountThin(ascent, t) / POINTS;
         all += area;
     }
