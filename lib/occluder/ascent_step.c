@@ -92,7 +92,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .views = &views,
         .goal = goal.voxels,
         .goalCells = goal.cells,
-        .keepsToGoal = build->options->terrain,
+        .keepsToGoal = build->options->terrain || build->isBand,
         .inside = &build->inside,
         .mesh = build->mesh,
         .flat = build->stats.tolerance > 0.0 ? &build->flat.mesh : NULL,

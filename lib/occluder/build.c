@@ -26,6 +26,8 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
         {"solid", pvtFillStep, &build.stats.seconds.solid},
         // Where the surface has no inside behind it, it is its own occluder.
         {"sheets", pvtSheetStep, &build.stats.seconds.sections},
+        // Where it is not flat either, triangles may lie within a band around it.
+        {"band", pvtBandStep, &build.stats.seconds.sections},
         // Thousands of planes are tried, and the largest slice of each bin is kept.
         {"sections", pvtSearchStep, &build.stats.seconds.sections},
         // Slices become polygons that can be shortened down to one triangle.

@@ -13,13 +13,17 @@
 
 enum { MIN_SHEETS = 128, MAX_SHEETS = 512 };
 
-// [vx] How far the surface may lie from a panel on it. Up to √3 the bound of the strict interior
-// holds for sheets as well. All but the first are for meshes without any.
-static const double DEVIATIONS[] = {0.03125, 0.25, 1.0, 2.0, 4.0};
-static const double BOUND = 1.7320508075688772;
+// [vx] How far the surface may lie from a panel on it: less than √3, so that the bound of the
+// strict interior holds for sheets as well. All but the first are for meshes without any.
+static const double DEVIATIONS[] = {0.03125, 0.25, 1.0};
+enum { DEVIATION_COUNT = sizeof DEVIATIONS / sizeof *DEVIATIONS };
 // Sheets that take this part of the surface need not lie any farther off; nearly all of it, where
 // the next step is a small one.
-static const double ENOUGH[] = {0.9, 0.5, 0.5, 0.5};
+static const double ENOUGH[] = {0.9, 0.5, 0.5};
+// Where they take this part of it the surface is flat: a quick selection tells how much they hide.
+static const double FLAT_SHARE = 0.5;
+// Less than this is not flat a little farther off, either: a band is tried first.
+static const double HOPELESS = 0.25;
 
 bool pvtMayUseSheets(const pvtBuild* build)
 {
@@ -72,13 +76,11 @@ static pvtStatus GetShare(pvtContext* context, const pvtBuild* build, double* sh
     return PVT_OK;
 }
 
-// How far the surface may stray from sheets at most.
+// How far the surface may stray from sheets at most: where there is an inside, no farther than
+// sheets beside it may.
 static double GetMostDeviation(const pvtBuild* build)
 {
-    if (pvtBitGrid_Count(&build->allowed) > 0) {
-        return DEVIATIONS[0];
-    }
-    return build->options->error > 0.0 ? BOUND : HUGE_VAL;
+    return pvtBitGrid_Count(&build->allowed) > 0 ? DEVIATIONS[0] : DEVIATIONS[DEVIATION_COUNT - 1];
 }
 
 // Sheets may reach into voxels that they do not pass over wholly.
@@ -93,36 +95,59 @@ static void WidenBySheets(pvtBuild* build)
     }
 }
 
+// Sheets as close to the surface as it allows, from the next deviation that was not tried yet.
+static pvtStatus FindClosestSheets(pvtContext* context, pvtBuild* build, bool isLast)
+{
+    const double most = GetMostDeviation(build);
+    double share = 0.0;
+    pvtStatus status = PVT_OK;
+    for (int i = build->triedDeviations; i < DEVIATION_COUNT && DEVIATIONS[i] <= most; ++i) {
+        status = FindSheets(context, build, DEVIATIONS[i]);
+        build->triedDeviations = i + 1;
+        // Without any bare surface all of it has an inside behind it.
+        if (status != PVT_OK || build->sheets.bare <= 0.0) {
+            return status;
+        }
+        status = GetShare(context, build, &share);
+        build->isFlat = share >= FLAT_SHARE;
+        if (status != PVT_OK || share >= ENOUGH[i] || (!isLast && share < HOPELESS)) {
+            return status;
+        }
+    }
+    return status;
+}
+
+static pvtStatus MarkSheets(pvtContext* context, pvtBuild* build)
+{
+    if (build->sheets.count == 0) {
+        return PVT_OK;
+    }
+    pvtBitGrid_Free(context, &build->hiding);
+    const pvtStatus status =
+        pvtMarkSheets(context, &build->sheets, &build->allowed, &build->hiding);
+    WidenBySheets(build);
+    return status;
+}
+
 pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build)
 {
     if (!pvtMayUseSheets(build)) {
         return PVT_OK;
     }
-    double most = 0.0;
-    double share = 0.0;
-    pvtStatus status = FindSheets(context, build, DEVIATIONS[0]);
-    if (status == PVT_OK && build->sheets.bare > 0.0) {
-        status = GetShare(context, build, &share);
+    const pvtStatus status = FindClosestSheets(context, build, !pvtMayUseBand(build));
+    return status == PVT_OK ? MarkSheets(context, build) : status;
+}
+
+pvtStatus pvtSheetStepWithoutBand(pvtContext* context, pvtBuild* build)
+{
+    pvtStatus status = PVT_OK;
+    if (pvtMayUseSheets(build)) {
+        status = FindClosestSheets(context, build, true);
+        status = status == PVT_OK ? MarkSheets(context, build) : status;
     }
-    if (status == PVT_OK && build->sheets.bare > 0.0) {
-        most = GetMostDeviation(build);
-    }
-    for (size_t i = 1; i < sizeof DEVIATIONS / sizeof *DEVIATIONS && status == PVT_OK &&
-                       share < ENOUGH[i - 1] && DEVIATIONS[i] <= most;
-         ++i) {
-        status = FindSheets(context, build, DEVIATIONS[i]);
-        if (status == PVT_OK) {
-            status = GetShare(context, build, &share);
-        }
-    }
-    if (status == PVT_OK && build->sheets.count > 0) {
-        status = pvtMarkSheets(context, &build->sheets, &build->allowed, &build->hiding);
-        WidenBySheets(build);
-    }
-    if (status == PVT_OK && build->bounds.lower.x > build->bounds.upper.x) {
-        status = pvtFailNothingInside(context, build);
-    }
-    return status;
+    return status == PVT_OK && build->bounds.lower.x > build->bounds.upper.x
+               ? pvtFailNothingInside(context, build)
+               : status;
 }
 
 pvtStatus pvtAddSheets(pvtContext* context, const pvtCandidateOptions* options, pvtBuild* build)
@@ -134,9 +159,11 @@ pvtStatus pvtAddSheets(pvtContext* context, const pvtCandidateOptions* options, 
 pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build)
 {
     const bool hasSheets = build->hiding.words != NULL;
+    const pvtBitGrid* grid = build->isBand ? &build->solid.surface
+                             : hasSheets   ? &build->hiding
+                                           : &build->allowed;
     const pvtMeasureGridOptions options = {&build->views, &build->bounds, PVT_MEASURE_SIZE};
-    return pvtMeasureGrid(context, &options, hasSheets ? &build->hiding : &build->allowed,
-                          &build->cells, &build->stats.measureOfSolid);
+    return pvtMeasureGrid(context, &options, grid, &build->cells, &build->stats.measureOfSolid);
 }
 
 static double GetWidth(const pvtMesh* mesh, size_t triangle)
@@ -207,15 +234,8 @@ pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build, const uint64_t* o
         return PVT_OK;
     }
     stats->deviation = build->deviation * stats->voxelSize;
-    stats->errorBound = fmax(stats->errorBound, stats->deviation);
     const pvtStatus status = stats->outside > 0 ? CheckPanels(context, build, outside) : PVT_OK;
-    if (status == PVT_OK && build->deviation > BOUND) {
-        pvtWarnOnce(
-            context,
-            "the mesh has no inside at %d voxels: all panels lie on its surface, which is not "
-            "flat, and stray from it by up to %.3g; a higher --resolution brings them closer",
-            stats->resolution, stats->deviation);
-    } else if (status == PVT_OK && build->solid.strictCount == 0) {
+    if (status == PVT_OK && build->solid.strictCount == 0) {
         pvtWarnOnce(
             context,
             "the mesh has no inside at %d voxels: all panels lie on its surface, within %.3g",

@@ -27,9 +27,12 @@ typedef struct pvtBuild {
     pvtSlicer slicer;
     bool hasSlicer;
     pvtSectionSet sections;
-    pvtSheetSet sheets; ///< empty where the strict interior does
-    double deviation;   ///< [vx] of the surface from them
-    pvtBitGrid hiding;  ///< the allowed voxels and those that the sheets pass; may have no words
+    pvtSheetSet sheets;  ///< empty where the strict interior does
+    double deviation;    ///< [vx] of the surface from them
+    int triedDeviations; ///< of those that sheets are looked for with
+    bool isFlat;         ///< whether sheets take much of the surface
+    bool isBand;         ///< whether triangles lie within a band around the surface instead
+    pvtBitGrid hiding;   ///< the allowed voxels and those that the sheets pass; may have no words
     pvtCandidateSet candidates;
     pvtViewSet views;
     pvtOccluder occluder;              ///< before an ascent the polygons of all its starts
@@ -44,6 +47,7 @@ pvtStatus pvtResolveSizes(pvtContext* context, pvtBuild* build);
 pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build);
@@ -86,6 +90,11 @@ static inline int pvtSpreadEffort(int count, int triangles)
     enum { FULL_BUDGET = 64 };
     return triangles <= FULL_BUDGET ? count : count * FULL_BUDGET / triangles;
 }
+/// Whether triangles may lie within a band around the surface, where it would help.
+bool pvtMayUseBand(const pvtBuild* build);
+/// Where there is no band: the sheets that were left for it to be tried before, and
+/// PVT_NOTHING_INSIDE where there is no room at all.
+pvtStatus pvtSheetStepWithoutBand(pvtContext* context, pvtBuild* build);
 /// Whether a polygon may lie on the surface itself.
 bool pvtMayUseSheets(const pvtBuild* build);
 /// Adds chains on the sheets to the candidates.

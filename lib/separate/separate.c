@@ -93,7 +93,9 @@ static pvtStatus GiveReason(const Separate* separate, const char* text,
 static pvtStatus MeasureSolid(pvtContext* context, const pvtBuildOptions* options,
                               const pvtMesh* mesh, pvtBuildStats* stats)
 {
-    pvtBuild build = {.options = options, .mesh = mesh, .started = pvtGetSeconds()};
+    pvtBuildOptions alone = *options;
+    alone.budget = LEAST_BUDGET; // the share is what it is measured for
+    pvtBuild build = {.options = &alone, .mesh = mesh, .started = pvtGetSeconds()};
     pvtViewOptions views = options->views;
     views.up = (int)options->up;
     pvtStatus status = pvtResolveSizes(context, &build);
@@ -105,6 +107,9 @@ static pvtStatus MeasureSolid(pvtContext* context, const pvtBuildOptions* option
     }
     if (status == PVT_OK) {
         status = pvtSheetStep(context, &build);
+    }
+    if (status == PVT_OK) {
+        status = pvtBandStep(context, &build);
     }
     if (status == PVT_OK) {
         status = pvtMakeViews(context, &views, &build.views);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "hills.h"
 #include "warnings.h"
 
 #include "base/vector.h"
@@ -33,13 +34,6 @@ static void MakeTorus(pvtContext* context, pvtMesh* mesh)
     }
     CHECK_OK(context, pvtCreateMesh(context, positions, AROUND * ACROSS, indices,
                                     2 * AROUND * ACROSS, mesh));
-}
-
-static void AddQuad(uint32_t* indices, size_t* count, const uint32_t quad[4])
-{
-    const uint32_t two[6] = {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]};
-    memcpy(indices + *count, two, sizeof two);
-    *count += 6;
 }
 
 // Half of a sphere of radius 1, open on top, with a wall inwards from there: 16 by 6 quads a side.
@@ -218,24 +212,6 @@ static void a_wall_is_covered_within_a_tolerance(void** state)
     assert_true(score.recall > 0.95);
     pvtMesh_Free(context, &wall);
     DestroyTestContext(context);
-}
-
-// Hills over 8 by 8, 24 by 24 quads.
-static void MakeHills(pvtContext* context, pvtMesh* mesh)
-{
-    enum { N = 24, CORNERS = (N + 1) * (N + 1) };
-    pvtVec3 positions[CORNERS];
-    uint32_t indices[6 * N * N];
-    size_t count = 0;
-    for (uint32_t i = 0; i < CORNERS; ++i) {
-        const double x = 8.0 * (i / (N + 1)) / N, z = 8.0 * (i % (N + 1)) / N;
-        positions[i] = (pvtVec3){x, 0.5 * sin(1.7 * x + 0.3) * cos(1.3 * z + 0.5), z};
-    }
-    for (uint32_t i = 0; i < N * N; ++i) {
-        const uint32_t a = i / N * (N + 1) + i % N;
-        AddQuad(indices, &count, (uint32_t[4]){a, a + 1, a + N + 2, a + N + 1});
-    }
-    CHECK_OK(context, pvtCreateMesh(context, positions, CORNERS, indices, count / 3, mesh));
 }
 
 // Below its edge a landscape hides nothing, though all of that counts as inside: what is seen there

@@ -160,15 +160,15 @@ typedef struct pvtBuildOptions {
 
 /// What a build can tell about itself.
 typedef struct pvtBuildStats {
-    int resolution;      ///< [vx] along the longest side, as used
-    double voxelSize;    ///< [wu]
-    double tolerance;    ///< [wu]
-    double smallestHole; ///< [wu]
-    double errorBound;   ///< [wu] √3 voxels + max(tolerance, smallestHole / 2), or `deviation` if
-                         ///< that is more: no ray that the occluder blocks passes the original
-                         ///< farther away than this
-    int surfacePanels;   ///< polygons that lie on the surface itself: there is no inside
-    double deviation;    ///< [wu] how far these may lie from it; 0 when there are none
+    int resolution;   ///< [vx] along the longest side, as used
+    double voxelSize; ///< [wu]
+    double tolerance; ///< [wu] as asked for; or how far triangles may stray from a surface that is
+                      ///< not flat and has no inside, which is told by a warning
+    double smallestHole;   ///< [wu]
+    double errorBound;     ///< [wu] √3 voxels + max(tolerance, smallestHole / 2): no ray that the
+                           ///< occluder blocks passes the original farther away than this
+    int surfacePanels;     ///< polygons that lie on the surface itself: there is no inside
+    double deviation;      ///< [wu] how far these may lie from it; 0 when there are none
     double insideFraction; ///< of the bounds that is strictly inside
     double measure;        ///< [wu³] of the occluder
     double measureOfSolid; ///< [wu³] of everything that may be covered: the ceiling

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// A surface that has no inside and is not flat, a landscape above all: triangles may lie within a
+// band around it, which is as narrow as the budget allows.
+#include "ceiling.h"
+#include "steps.h"
+
+#include "base/context.h"
+#include "voxel/bit_grid.h"
+
+#include <math.h>
+
+// [vx] How far a band reaches from the touched voxels, at 256 voxels along the longest side.
+static const double REACHES[] = {1.0, 2.0, 4.0, 8.0};
+enum { REACH_COUNT = sizeof REACHES / sizeof *REACHES };
+static const double REACH_RESOLUTION = 256.0;
+// Of what the touched voxels hide: a mesh that hides less has gaps that they do not show, as leaves
+// and twigs have: 0.1 to 0.5, where landscapes have 0.8 to 0.9.
+static const double WHOLE = 0.75;
+// Of what a band as a whole hides, at the reaches above: where the touched voxels hide less than
+// this, more than their rim has grown. Between them it goes by the reach.
+static const double RIM_LOSS = 0.05, MOST_LOSS = 0.28;
+// Of what the surface hides: where a selection without refinement hides this part of it, nearly all
+// is hidden in the end; with half of this next to nothing.
+static const double ENOUGH = 0.5;
+// Of the touched voxels: an inside of fewer is none.
+static const double LEAST_INSIDE = 0.01;
+
+// What is known of triangles within some voxels before any are made with care.
+typedef struct Trial {
+    double share; // that a quick selection hides of what the mesh does
+    double whole; // that the mesh hides of what the touched voxels do
+    double kept;  // that the touched voxels hide of what all that is allowed does
+} Trial;
+
+static double GetReach(const pvtBuild* build, int number)
+{
+    const double voxels = REACHES[number] * build->stats.resolution / REACH_RESOLUTION;
+    return fmax(voxels, 1.0) * build->stats.voxelSize;
+}
+
+// Where a bound of the error is asked for, a wider one is no answer. What looks like a landscape
+// may have an inside in a few folds.
+bool pvtMayUseBand(const pvtBuild* build)
+{
+    const double touched = (double)pvtBitGrid_Count(&build->solid.surface);
+    return pvtMayUseSheets(build) && build->options->error == 0.0 &&
+           (build->solid.remedy.terrain ||
+            (double)pvtBitGrid_Count(&build->allowed) < LEAST_INSIDE * touched);
+}
+
+// Lets triangles lie in the touched voxels of `solid` and within `reach` [wu] of them.
+static pvtStatus AllowBand(pvtContext* context, const pvtSolid* solid, double reach,
+                           pvtBuild* build)
+{
+    pvtBitGrid_Free(context, &build->allowed);
+    pvtSliceVolume_Free(context, &build->volume);
+    build->stats.tolerance = reach;
+    pvtStatus status = pvtMakeAllowedGrid(context, solid, reach, &build->allowed);
+    if (status == PVT_OK) {
+        pvtFindVoxelBounds(&build->allowed, &build->bounds);
+        status = pvtCreateSliceVolume(context, &build->allowed, &build->volume);
+    }
+    return status;
+}
+
+static pvtStatus Select(pvtContext* context, pvtBuild* build)
+{
+    pvtStatus status = pvtSearchStep(context, build);
+    if (status == PVT_OK) {
+        status = pvtChainStep(context, build);
+    }
+    return status == PVT_OK ? pvtSelectStep(context, build) : status;
+}
+
+static double Divide(double part, double whole)
+{
+    return whole > 0.0 ? part / whole : 0.0;
+}
+
+static pvtStatus RunTrial(pvtContext* context, const pvtBitGrid* surface, pvtBuild* build,
+                          Trial* trial)
+{
+    double chosen = 0.0, mesh = 0.0, touched = 0.0, allowed = 0.0;
+    *trial = (Trial){0};
+    pvtStatus status = Select(context, build);
+    // Where there is no room for a polygon, none hides anything.
+    if (status == PVT_NOTHING_INSIDE) {
+        return PVT_OK;
+    }
+    const pvtOccluder* cut = build->flat.loops.loopCount > 0 ? &build->flat : &build->occluder;
+    const pvtMeasureGridOptions options = {&build->views, &build->bounds, PVT_MEASURE_SIZE};
+    if (status == PVT_OK) {
+        status = pvtMeasureOcclusion(context, options.views, options.bounds, options.size,
+                                     &cut->mesh, &chosen);
+    }
+    if (status == PVT_OK) {
+        status = pvtMeasureOcclusion(context, options.views, options.bounds, options.size,
+                                     build->mesh, &mesh);
+    }
+    if (status == PVT_OK) {
+        status = pvtMeasureGrid(context, &options, surface, NULL, &touched);
+    }
+    if (status == PVT_OK) {
+        status = pvtMeasureGrid(context, &options, &build->allowed, NULL, &allowed);
+    }
+    *trial = (Trial){Divide(chosen, mesh), Divide(mesh, touched), Divide(touched, allowed)};
+    return status;
+}
+
+static pvtBuildOptions GetTrialOptions(const pvtBuild* build)
+{
+    pvtBuildOptions options = *build->options;
+    options.effort = PVT_EFFORT_FAST;
+    options.createSlicer = NULL;
+    options.releaseSlicer = NULL;
+    return options;
+}
+
+static pvtStatus TrySheets(pvtContext* context, const pvtBuild* build, Trial* trial)
+{
+    const pvtBuildOptions options = GetTrialOptions(build);
+    pvtBuild scratch = {.options = &options,
+                        .mesh = build->mesh,
+                        .started = build->started,
+                        .stats = build->stats,
+                        .allowed = build->allowed,
+                        .cells = build->cells,
+                        .volume = build->volume,
+                        .bounds = build->bounds,
+                        .sheets = build->sheets};
+    const pvtStatus status = RunTrial(context, &build->solid.surface, &scratch, trial);
+    // These stay the build's.
+    scratch.allowed = (pvtBitGrid){0};
+    scratch.cells = (pvtCellGrid){0};
+    scratch.volume = (pvtSliceVolume){0};
+    scratch.sheets = (pvtSheetSet){0};
+    pvtBuild_Free(context, &scratch);
+    return status;
+}
+
+static pvtStatus TryReach(pvtContext* context, const pvtBuild* build, double reach, Trial* trial)
+{
+    const pvtBuildOptions options = GetTrialOptions(build);
+    pvtBuild scratch = {
+        .options = &options, .mesh = build->mesh, .started = build->started, .stats = build->stats};
+    pvtStatus status = AllowBand(context, &build->solid, reach, &scratch);
+    if (status == PVT_OK) {
+        status = RunTrial(context, &build->solid.surface, &scratch, trial);
+    }
+    pvtBuild_Free(context, &scratch);
+    return status;
+}
+
+// Whether nothing but the rim grows when the surface does.
+static bool IsWhole(const Trial* trial, double voxels)
+{
+    return trial->whole >= WHOLE && trial->kept >= 1.0 - fmin(RIM_LOSS * voxels, MOST_LOSS);
+}
+
+// The narrowest band that is wide enough, or the widest; 0 where it would close gaps.
+static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* reach)
+{
+    const double whole = REACH_RESOLUTION / build->stats.resolution / build->stats.voxelSize;
+    Trial trial = {0};
+    pvtStatus status = PVT_OK;
+    *reach = 0.0;
+    for (int i = 0; i < REACH_COUNT && trial.share < ENOUGH && status == PVT_OK; ++i) {
+        const double next = GetReach(build, i);
+        if (next > *reach) {
+            *reach = next;
+            status = TryReach(context, build, next, &trial);
+            if (status == PVT_OK && !IsWhole(&trial, next * whole)) {
+                *reach = 0.0;
+                return status;
+            }
+        }
+    }
+    return status;
+}
+
+static pvtStatus UseBand(pvtContext* context, pvtBuild* build, double reach)
+{
+    pvtBuildStats* stats = &build->stats;
+    pvtSheetSet_Free(context, &build->sheets);
+    pvtBitGrid_Free(context, &build->hiding);
+    pvtCellGrid_Free(context, &build->cells);
+    pvtTouching_Free(context, &build->touching);
+    build->isBand = true;
+    const pvtStatus status = AllowBand(context, &build->solid, reach, build);
+    stats->errorBound = fmax(stats->errorBound, sqrt(3.0) * stats->voxelSize + reach);
+    if (status == PVT_OK) {
+        pvtWarnOnce(context,
+                    "there is next to nothing inside at %d voxels, and the surface is not flat: "
+                    "triangles may stray from it by %.3g (%.3g voxels); --tolerance sets how far, "
+                    "and a larger --budget needs less",
+                    stats->resolution, reach, reach / stats->voxelSize);
+    }
+    return status;
+}
+
+pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
+{
+    double reach = 0.0;
+    pvtStatus status = PVT_OK;
+    if (pvtMayUseBand(build)) {
+        Trial trial = {0};
+        status = build->isFlat ? TrySheets(context, build, &trial) : PVT_OK;
+        if (status == PVT_OK && trial.share < ENOUGH) {
+            status = FindReach(context, build, &reach);
+        }
+    }
+    if (status == PVT_OK) {
+        status =
+            reach > 0.0 ? UseBand(context, build, reach) : pvtSheetStepWithoutBand(context, build);
+    }
+    return status;
+}

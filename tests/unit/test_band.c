@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+#include "hills.h"
+#include "warnings.h"
+
+#include "base/random.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <paravent/evaluate.h>
+#include <paravent/occluder.h>
+#include <stdlib.h>
+#include <string.h>
+
+static pvtBuildOptions GetQuickOptions(void)
+{
+    pvtBuildOptions options = pvtDefaultBuildOptions();
+    options.effort = PVT_EFFORT_FAST;
+    options.resolution = 128;
+    options.views.count = 64;
+    return options;
+}
+
+static pvtQuadScore Score(pvtContext* context, const pvtMesh* mesh, const pvtMesh* occluder)
+{
+    pvtEvaluateOptions options = pvtDefaultEvaluateOptions();
+    options.views = 64;
+    options.quads = 4000;
+    pvtEvaluation evaluation;
+    CHECK_OK(context, pvtEvaluateOccluders(context, &options, mesh, occluder, 1, &evaluation));
+    const pvtQuadScore score = evaluation.occluders[0].uniform;
+    pvtEvaluation_Free(context, &evaluation);
+    return score;
+}
+
+static double GetDistanceToSegment(pvtVec3 p, pvtVec3 a, pvtVec3 b)
+{
+    const pvtVec3 along = pvtSub(b, a);
+    const double t = pvtDot(pvtSub(p, a), along) / pvtDot(along, along);
+    return pvtLength3(pvtSub(p, pvtAdd(a, pvtScale(along, fmin(fmax(t, 0.0), 1.0)))));
+}
+
+static double GetDistanceToTriangle(pvtVec3 p, const pvtVec3 corners[3])
+{
+    const pvtVec3 normal = pvtCross(pvtSub(corners[1], corners[0]), pvtSub(corners[2], corners[0]));
+    double nearest = INFINITY;
+    bool isOver = true;
+    for (int k = 0; k < 3; ++k) {
+        const pvtVec3 a = corners[k], b = corners[(k + 1) % 3];
+        isOver = isOver && pvtDot(pvtCross(pvtSub(b, a), pvtSub(p, a)), normal) >= 0.0;
+        nearest = fmin(nearest, GetDistanceToSegment(p, a, b));
+    }
+    return isOver ? fabs(pvtDot(pvtSub(p, corners[0]), normal)) / pvtLength3(normal) : nearest;
+}
+
+static double GetDistance(pvtVec3 p, const pvtMesh* mesh)
+{
+    double nearest = INFINITY;
+    for (size_t t = 0; t < mesh->triangleCount; ++t) {
+        pvtVec3 corners[3];
+        for (size_t k = 0; k < 3; ++k) {
+            corners[k] = mesh->positions[mesh->indices[3 * t + k]];
+        }
+        nearest = fmin(nearest, GetDistanceToTriangle(p, corners));
+    }
+    return nearest;
+}
+
+// At points all over its triangles, in world units.
+static double GetFarthest(const pvtMesh* occluder, const pvtMesh* mesh)
+{
+    enum { STEPS = 6 };
+    double farthest = 0.0;
+    for (size_t t = 0; t < occluder->triangleCount; ++t) {
+        const uint32_t* corners = occluder->indices + 3 * t;
+        const pvtVec3 origin = occluder->positions[corners[0]];
+        const pvtVec3 u = pvtSub(occluder->positions[corners[1]], origin);
+        const pvtVec3 v = pvtSub(occluder->positions[corners[2]], origin);
+        for (int i = 0; i <= STEPS; ++i) {
+            for (int j = 0; i + j <= STEPS; ++j) {
+                const pvtVec3 p = pvtAdd(
+                    origin, pvtAdd(pvtScale(u, (double)i / STEPS), pvtScale(v, (double)j / STEPS)));
+                farthest = fmax(farthest, GetDistance(p, mesh));
+            }
+        }
+    }
+    return farthest;
+}
+
+// Flat panels on it have a recall of 0.1 % and less.
+static void hills_without_an_inside_are_hidden_behind_nearly_as_well(void** state)
+{
+    (void)state;
+    Warnings warnings;
+    pvtContext* context = CreateWarningContext(&warnings);
+    pvtMesh hills;
+    MakeHills(context, &hills);
+    const pvtBuildOptions options = GetQuickOptions();
+    pvtOccluder occluder;
+    pvtBuildStats stats;
+    CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
+    assert_true(occluder.mesh.triangleCount <= 64);
+    assert_true(stats.outside == 0);
+    assert_true(stats.tolerance >= stats.voxelSize);
+    CHECK_NEAR(stats.errorBound, sqrt(3.0) * stats.voxelSize + stats.tolerance, 1e-9);
+    assert_true(GetFarthest(&occluder.mesh, &hills) <= stats.errorBound);
+    assert_non_null(strstr(warnings.text, "triangles may stray from it by"));
+    const pvtQuadScore score = Score(context, &hills, &occluder.mesh);
+    assert_true(score.recall > 0.9);
+    assert_true(score.precision > 0.998);
+    pvtOccluder_Free(context, &occluder);
+    pvtMesh_Free(context, &hills);
+    DestroyTestContext(context);
+}
+
+static void more_triangles_stray_no_farther(void** state)
+{
+    (void)state;
+    static const int budgets[] = {8, 64, 400};
+    pvtContext* context = CreateTestContext(2);
+    pvtMesh hills;
+    MakeHills(context, &hills);
+    double tolerances[3] = {0};
+    for (int i = 0; i < 3; ++i) {
+        pvtBuildOptions options = GetQuickOptions();
+        options.budget = budgets[i];
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
+        assert_true(stats.outside == 0);
+        tolerances[i] = stats.tolerance;
+        pvtOccluder_Free(context, &occluder);
+    }
+    assert_true(tolerances[0] >= tolerances[1]);
+    assert_true(tolerances[1] >= tolerances[2]);
+    assert_true(tolerances[0] > tolerances[2]);
+    pvtMesh_Free(context, &hills);
+    DestroyTestContext(context);
+}
+
+// Bounds that were asked for are kept: nothing strays farther.
+static void an_error_or_a_tolerance_that_is_asked_for_stands(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtMesh hills;
+    MakeHills(context, &hills);
+    for (int i = 0; i < 2; ++i) {
+        pvtBuildOptions options = GetQuickOptions();
+        options.error = i == 0 ? 0.1 : 0.0;
+        options.tolerance = (pvtLength){i == 0 ? 0.0 : 0.05, false};
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
+        CHECK_NEAR(stats.tolerance, options.tolerance.value, 0.0);
+        assert_true(i == 1 || stats.errorBound <= 0.1 + 1e-9);
+        pvtOccluder_Free(context, &occluder);
+    }
+    pvtMesh_Free(context, &hills);
+    DestroyTestContext(context);
+}
+
+// Of a block's corner: it has no inside, but all of it is flat.
+static void flat_walls_need_no_band(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    const pvtVec3 corners[] = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}, {0, 0, 3}, {0, 2, 3}};
+    const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 4, 5, 0, 5, 3};
+    pvtMesh walls;
+    CHECK_OK(context, pvtCreateMesh(context, corners, 6, indices, 4, &walls));
+    const pvtBuildOptions options = GetQuickOptions();
+    pvtOccluder occluder;
+    pvtBuildStats stats;
+    CHECK_OK(context, pvtBuildOccluder(context, &options, &walls, &occluder, &stats));
+    assert_true(stats.tolerance == 0.0);
+    assert_int_equal(stats.surfacePanels, 2);
+    pvtOccluder_Free(context, &occluder);
+    pvtMesh_Free(context, &walls);
+    DestroyTestContext(context);
+}
+
+// Leaves that lie in all directions, with gaps between them that a band would close: with one that
+// may, precision is 1 %.
+static void MakeLeaves(pvtContext* context, pvtMesh* mesh)
+{
+    enum { COUNT = 1500 };
+    pvtVec3* positions = calloc(3 * COUNT, sizeof *positions);
+    uint32_t* indices = calloc(3 * COUNT, sizeof *indices);
+    assert_non_null(positions);
+    assert_non_null(indices);
+    pvtRandom random = pvtMakeRandom(7, 1);
+    for (uint32_t i = 0; i < 3 * COUNT; ++i) {
+        const double spread = i % 3 == 0 ? 8.0 : 0.3;
+        const pvtVec3 away = {spread * (pvtRandom_Unit(&random) - 0.5),
+                              spread * (pvtRandom_Unit(&random) - 0.5),
+                              spread * (pvtRandom_Unit(&random) - 0.5)};
+        positions[i] = i % 3 == 0 ? away : pvtAdd(positions[i - i % 3], away);
+        indices[i] = i;
+    }
+    CHECK_OK(context, pvtCreateMesh(context, positions, 3 * COUNT, indices, COUNT, mesh));
+    free(positions);
+    free(indices);
+}
+
+// Hills of ribbons with gaps as wide as they are, a third of a voxel: to voxels they look whole,
+// but a quarter of what is behind can be seen.
+static void MakeRibbons(pvtContext* context, pvtMesh* mesh)
+{
+    enum { RIBBONS = 200, STEPS = 24, CORNERS = 2 * RIBBONS * (STEPS + 1) };
+    pvtVec3* positions = calloc(CORNERS, sizeof *positions);
+    uint32_t* indices = calloc((size_t)6 * RIBBONS * STEPS, sizeof *indices);
+    assert_non_null(positions);
+    assert_non_null(indices);
+    size_t count = 0;
+    for (uint32_t i = 0; i < CORNERS; ++i) {
+        const uint32_t side = i / (STEPS + 1);
+        const double x = 8.0 * (i % (STEPS + 1)) / STEPS, z = 0.02 * side;
+        positions[i] = (pvtVec3){x, GetHillHeight(x, z), z};
+        if (side % 2 == 0 && i % (STEPS + 1) < STEPS) {
+            AddQuad(indices, &count, (uint32_t[4]){i, i + 1, i + STEPS + 2, i + STEPS + 1});
+        }
+    }
+    CHECK_OK(context, pvtCreateMesh(context, positions, CORNERS, indices, count / 3, mesh));
+    free(positions);
+    free(indices);
+}
+
+static void gaps_stay_open(void** state)
+{
+    (void)state;
+    void (*const makers[])(pvtContext*, pvtMesh*) = {MakeLeaves, MakeRibbons};
+    pvtContext* context = CreateTestContext(2);
+    for (int i = 0; i < 2; ++i) {
+        pvtMesh mesh;
+        makers[i](context, &mesh);
+        const pvtBuildOptions options = GetQuickOptions();
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        const pvtStatus status = pvtBuildOccluder(context, &options, &mesh, &occluder, &stats);
+        assert_true(status == PVT_OK || status == PVT_NOTHING_INSIDE);
+        assert_true(stats.tolerance == 0.0);
+        if (status == PVT_OK) {
+            assert_true(GetFarthest(&occluder.mesh, &mesh) <= stats.errorBound);
+            pvtOccluder_Free(context, &occluder);
+        }
+        pvtMesh_Free(context, &mesh);
+    }
+    DestroyTestContext(context);
+}
+
+static void the_same_comes_out_on_any_number_of_threads(void** state)
+{
+    (void)state;
+    pvtOccluder occluders[2];
+    pvtContext* contexts[2];
+    for (int i = 0; i < 2; ++i) {
+        contexts[i] = CreateTestContext(i == 0 ? 1 : 4);
+        pvtMesh hills;
+        MakeHills(contexts[i], &hills);
+        pvtBuildOptions options = GetQuickOptions();
+        options.resolution = 48;
+        CHECK_OK(contexts[i], pvtBuildOccluder(contexts[i], &options, &hills, &occluders[i], NULL));
+        pvtMesh_Free(contexts[i], &hills);
+    }
+    assert_int_equal(occluders[0].mesh.positionCount, occluders[1].mesh.positionCount);
+    assert_memory_equal(occluders[0].mesh.positions, occluders[1].mesh.positions,
+                        occluders[0].mesh.positionCount * sizeof *occluders[0].mesh.positions);
+    for (int i = 0; i < 2; ++i) {
+        pvtOccluder_Free(contexts[i], &occluders[i]);
+        DestroyTestContext(contexts[i]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hills_without_an_inside_are_hidden_behind_nearly_as_well),
+        cmocka_unit_test(more_triangles_stray_no_farther),
+        cmocka_unit_test(an_error_or_a_tolerance_that_is_asked_for_stands),
+        cmocka_unit_test(flat_walls_need_no_band),
+        cmocka_unit_test(gaps_stay_open),
+        cmocka_unit_test(the_same_comes_out_on_any_number_of_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
