@@ -13,7 +13,16 @@ enum { FINEST_GOAL = 512 };
 bool pvtMayAscend(const pvtBuild* build)
 {
     const bool hasRoom = build->stats.tolerance > 0.0 || build->solid.strictCount > 0;
-    return !pvtIsPaper(build) && hasRoom && build->options->budget <= PVT_MOST_ASCENT;
+    // More triangles than can climb are worth it where they hide more without: what does is taken
+    // by the measure, which within a tolerance that was asked for grows with what sticks out.
+    const bool isMeasured = build->stats.tolerance == 0.0 || build->isBand;
+    return !pvtIsPaper(build) && hasRoom &&
+           (isMeasured || build->options->budget <= PVT_MOST_ASCENT);
+}
+
+int pvtGetAscentBudget(const pvtBuild* build)
+{
+    return build->options->budget < PVT_MOST_ASCENT ? build->options->budget : PVT_MOST_ASCENT;
 }
 
 pvtInterior pvtGetInterior(const pvtBuild* build)
@@ -84,7 +93,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
                    [PVT_EFFORT_DEFAULT] = {185, 3, 1024, 8, 3},
                    [PVT_EFFORT_BEST] = {450, 16, 1024, 16, 12}};
     const int effort = (int)build->options->effort;
-    const int budget = build->options->budget;
+    const int budget = pvtGetAscentBudget(build);
     const pvtViewOptions views = pvtGetViewOptions(build);
     Goal goal;
     pvtStatus status = MakeGoal(context, build, &goal);

@@ -140,9 +140,10 @@ static pvtStatus TrySheets(pvtContext* context, const pvtBuild* build, Trial* tr
 
 static pvtStatus TryReach(pvtContext* context, const pvtBuild* build, double reach, Trial* trial)
 {
-    const pvtBuildOptions options = GetTrialOptions(build);
+    pvtBuildOptions options = GetTrialOptions(build);
     pvtBuild scratch = {
         .options = &options, .mesh = build->mesh, .started = build->started, .stats = build->stats};
+    options.budget = pvtGetAscentBudget(build);
     pvtStatus status = AllowBand(context, &build->solid, reach, &scratch);
     if (status == PVT_OK) {
         status = RunTrial(context, &build->solid.surface, &scratch, trial);

@@ -8,21 +8,17 @@
 
 #include "base/context.h"
 
-// A cut is a start, chosen over fewer views than refinement and the final measure see. Within a
-// tolerance the first may be the end, too, where rows of holes are to be hidden.
-static int GetViewCount(const pvtBuild* build, int start)
+// A start is chosen over fewer views than refinement and the final measure see. Within a tolerance
+// the first may be the end, too, where rows of holes are to be hidden.
+static int GetStartViewCount(const pvtBuild* build, int start)
 {
     static const int others[PVT_MOST_STARTS] = {0, 8, 4, 12};
-    const bool isFast = build->options->effort == PVT_EFFORT_FAST;
-    if (!pvtMayAscend(build)) {
-        return isFast ? 16 : 36;
-    }
+    const pvtEffort effort = build->options->effort;
     if (start > 0) {
         return others[start];
     }
-    const bool isStart =
-        build->options->effort == PVT_EFFORT_DEFAULT && build->stats.tolerance == 0.0;
-    return isFast ? 8 : isStart ? 12 : 16;
+    const bool isStart = effort == PVT_EFFORT_DEFAULT && build->stats.tolerance == 0.0;
+    return effort == PVT_EFFORT_FAST ? 8 : isStart ? 12 : 16;
 }
 
 static int GetStartCount(const pvtBuild* build)
@@ -32,18 +28,18 @@ static int GetStartCount(const pvtBuild* build)
     return pvtMayAscend(build) ? counts[build->options->effort] : 1;
 }
 
-static pvtStatus Choose(pvtContext* context, pvtBuild* build, int start, pvtCut* cut)
+// A cut within `budget`, and with `surplus` more triangles another one, over at most so many views.
+static pvtStatus Choose(pvtContext* context, pvtBuild* build, int viewCount, int budget,
+                        int surplus, pvtCut* cut)
 {
     pvtViewOptions few = pvtGetViewOptions(build);
-    const int most = GetViewCount(build, start);
-    few.count = few.count < most ? few.count : most;
+    few.count = few.count < viewCount ? few.count : viewCount;
     pvtViewSet set;
     pvtStatus status = pvtMakeViews(context, &few, &set);
     if (status == PVT_OK) {
         pvtSelectOptions options = pvtDefaultSelectOptions();
-        options.budget = build->options->budget;
-        options.surplus =
-            pvtMayAscend(build) ? pvtGetAscentStart(options.budget) - options.budget : 0;
+        options.budget = budget;
+        options.surplus = surplus;
         options.views = pvtIsPaper(build) ? &build->views : &set;
         options.bounds = build->bounds;
         status = pvtIsPaper(build) ? pvtReduceOccluder(context, &options, &build->candidates, cut)
@@ -53,19 +49,34 @@ static pvtStatus Choose(pvtContext* context, pvtBuild* build, int start, pvtCut*
     return status;
 }
 
-// The polygons of a start; those of the first within the budget alone, too.
+// The polygons that are chosen for the budget, to stay in their planes.
+static pvtStatus TakeFlat(pvtContext* context, pvtBuild* build, pvtOccluder* occluder)
+{
+    const int viewCount = build->options->effort == PVT_EFFORT_FAST ? 16 : 36;
+    pvtCut cut = {0};
+    pvtStatus status = Choose(context, build, viewCount, build->options->budget, 0, &cut);
+    if (status == PVT_OK) {
+        status = pvtTakeCut(context, &build->candidates, &cut, occluder);
+    }
+    pvtCut_Free(context, &cut);
+    return status;
+}
+
+// The polygons that a start of the ascent begins with; of the first those within the budget, too.
 static pvtStatus TakeStart(pvtContext* context, pvtBuild* build, int start, pvtOccluder* occluder)
 {
+    const int budget = pvtGetAscentBudget(build);
     pvtCut cut = {0};
-    pvtStatus status = Choose(context, build, start, &cut);
-    if (status == PVT_OK && cut.ample == NULL) {
-        status = pvtTakeCut(context, &build->candidates, &cut, occluder);
-    } else if (status == PVT_OK) {
+    pvtStatus status = Choose(context, build, GetStartViewCount(build, start), budget,
+                              pvtGetAscentStart(budget) - budget, &cut);
+    if (status == PVT_OK) {
         const pvtCut ample = {.triangles = cut.ample, .count = cut.count};
         status = pvtTakeCut(context, &build->candidates, &ample, occluder);
-        if (status == PVT_OK && start == 0) {
-            status = pvtTakeCut(context, &build->candidates, &cut, &build->flat);
-        }
+    }
+    if (status == PVT_OK && start == 0) {
+        status = budget == build->options->budget
+                     ? pvtTakeCut(context, &build->candidates, &cut, &build->flat)
+                     : TakeFlat(context, build, &build->flat);
     }
     pvtCut_Free(context, &cut);
     return status;
@@ -88,7 +99,8 @@ static pvtStatus TakeStarts(pvtContext* context, pvtBuild* build)
         if (s > 0 && isSame) {
             starts[s] = starts[0];
         } else {
-            status = TakeStart(context, build, s, &starts[s]);
+            status = pvtMayAscend(build) ? TakeStart(context, build, s, &starts[s])
+                                         : TakeFlat(context, build, &starts[s]);
         }
         const size_t before = s > 0 ? build->startEnds[s - 1] : 0;
         build->startEnds[s] = before + starts[s].loops.loopCount;

@@ -292,7 +292,7 @@ static SearchSize GetSearchSize(const pvtBuild* build)
 {
     const bool isFast = build->options->effort == PVT_EFFORT_FAST;
     // What ascends needs no more than a start, and leaves it far behind.
-    if (pvtMayAscend(build)) {
+    if (pvtMayAscend(build) && pvtGetAscentBudget(build) == build->options->budget) {
         return isFast ? (SearchSize){6, 16, 4} : (SearchSize){16, 16, 4};
     }
     const pvtPlanOptions whole = pvtDefaultPlanOptions();

@@ -79,6 +79,8 @@ static inline pvtViewOptions pvtGetViewOptions(const pvtBuild* build)
 }
 /// Whether triangles may leave the planes of their polygons.
 bool pvtMayAscend(const pvtBuild* build);
+/// How many triangles may at most, of the budget.
+int pvtGetAscentBudget(const pvtBuild* build);
 /// Where triangles may lie.
 pvtInterior pvtGetInterior(const pvtBuild* build);
 /// When the build's refinement is to end.
