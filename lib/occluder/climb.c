@@ -226,11 +226,12 @@ static int CountSteps(const pvtAscent* ascent)
     return steps;
 }
 
-// Where the first start is between walls, climbs are longer.
+// Where the first start is between walls, climbs are longer; where there are fewer sights, shorter.
 static void PlanSteps(pvtAscent* ascent)
 {
     ascent->isShell = pvtAscent_IsBetweenWalls(ascent);
-    ascent->iterations = (int)((ascent->isShell ? SHELL_SHARE : 1.0) * ascent->options->iterations);
+    const double share = ascent->sights.share * (ascent->isShell ? SHELL_SHARE : 1.0);
+    ascent->iterations = (int)(share * ascent->options->iterations);
     ascent->allSteps = CountSteps(ascent);
 }
 

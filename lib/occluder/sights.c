@@ -21,6 +21,8 @@ enum {
     MARGIN = 4, // [px]
     STREAM = 0x51675,
     EXPOSURES = 64, // sets of sides of a node
+    MANY_POINTS = 150000,
+    LEAST_SIGHTS = 64,
 };
 
 static const float WIDENING = 1.2F; // of nodes, which are seen as squares: cubes cover more
@@ -351,12 +353,19 @@ static pvtStatus PackQuads(pvtContext* context, const Splatter* splatter)
     return PVT_OK;
 }
 
-static pvtStatus FillSights(pvtContext* context, Splatter* splatter, const pvtField* field)
+// What is full of holes has several times the border of any other solid, and no triangles that many
+// steps would help: its sights are fewer, so that time stays bounded.
+static void CountSights(const pvtSightOptions* options, size_t points, pvtSightSet* set)
 {
-    const pvtStatus status = ListBorder(context, field, splatter);
-    if (status != PVT_OK) {
-        return status;
-    }
+    const size_t asked = (size_t)options->count;
+    set->count = points > MANY_POINTS ? asked * MANY_POINTS / points : asked;
+    set->count = set->count < LEAST_SIGHTS ? LEAST_SIGHTS : set->count;
+    set->count = set->count > asked ? asked : set->count;
+    set->share = (double)set->count / (double)asked;
+}
+
+static pvtStatus FillSights(pvtContext* context, Splatter* splatter)
+{
     splatter->drawn = pvtAllocate(context, splatter->set->count * (size_t)splatter->options->quads,
                                   sizeof *splatter->drawn);
     splatter->set->sights =
@@ -371,14 +380,18 @@ static pvtStatus FillSights(pvtContext* context, Splatter* splatter, const pvtFi
 pvtStatus pvtCreateSights(pvtContext* context, const pvtSightOptions* options,
                           const pvtField* field, pvtSightSet* set)
 {
-    *set = (pvtSightSet){.count = (size_t)options->count};
+    *set = (pvtSightSet){0};
     pvtViewOptions spread = *options->views;
-    spread.count = options->count;
-    pvtViewSet views;
-    pvtStatus status = pvtMakeViews(context, &spread, &views);
+    pvtViewSet views = {0};
     Splatter splatter = {.context = context, .options = options, .views = &views, .set = set};
+    pvtStatus status = ListBorder(context, field, &splatter);
     if (status == PVT_OK) {
-        status = FillSights(context, &splatter, field);
+        CountSights(options, splatter.pointCount, set);
+        spread.count = (int)set->count;
+        status = pvtMakeViews(context, &spread, &views);
+    }
+    if (status == PVT_OK) {
+        status = FillSights(context, &splatter);
     }
     for (int axis = 0; axis < 3; ++axis) {
         pvtRelease(context, splatter.points[axis]);

@@ -45,11 +45,12 @@ typedef struct pvtSightSet {
     size_t count;
     pvtSightQuad* quads; ///< each within the goal of its sight, drawn in proportion to its area
     size_t quadCount;
+    double share; ///< 0 to 1: of the sights that were asked for; fewer where there is much border
 } pvtSightSet;
 
 typedef struct pvtSightOptions {
     const pvtViewOptions* views; ///< how to spread them, or the list; `count` is not used
-    int count;                   ///< of the sights
+    int count;                   ///< of the sights, at most
     int quads;                   ///< that are drawn of each goal, whether they fit into it or not
     uint64_t seed;
 } pvtSightOptions;

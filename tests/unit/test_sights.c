@@ -185,10 +185,42 @@ static void sights_see_a_disc_and_draw_their_rectangles_within_it(void** state)
     DestroyTestContext(context);
 }
 
+// Plates a node thick and a node apart: all of their nodes are border, 190,000. A block has 30,000.
+static void what_is_full_of_gaps_gets_fewer_sights(void** state)
+{
+    (void)state;
+    enum { SIZE = 76 };
+    pvtContext* context = CreateTestContext(2);
+    size_t counts[2];
+    for (int i = 0; i < 2; ++i) {
+        pvtBitGrid grid;
+        pvtField field;
+        pvtSightSet sights;
+        MakeEmptyGrid(context, SIZE, SIZE, SIZE, &grid);
+        for (int z = 2; z < SIZE - 2; z += i == 0 ? SIZE : 2) {
+            SetBox(&grid, (int[3]){2, 2, z},
+                   (int[3]){SIZE - 2, SIZE - 2, i == 0 ? SIZE - 2 : z + 1});
+        }
+        CHECK_OK(context, pvtCreateField(context, &grid, NULL, 128, &field));
+        const pvtViewOptions views = pvtDefaultViewOptions();
+        const pvtSightOptions options = {.views = &views, .count = 256, .quads = 40, .seed = 1};
+        CHECK_OK(context, pvtCreateSights(context, &options, &field, &sights));
+        CHECK_NEAR(sights.share, (double)sights.count / 256, 1e-12);
+        counts[i] = sights.count;
+        pvtSightSet_Free(context, &sights);
+        pvtField_Free(context, &field);
+        pvtBitGrid_Free(context, &grid);
+    }
+    assert_int_equal(counts[0], 256);
+    assert_true(counts[1] >= 64 && counts[1] < 256);
+    DestroyTestContext(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sights_see_a_disc_and_draw_their_rectangles_within_it),
+        cmocka_unit_test(what_is_full_of_gaps_gets_fewer_sights),
         cmocka_unit_test(sums_of_cells_count_pixels),
         cmocka_unit_test(rectangles_come_up_as_often_as_they_are_large),
         cmocka_unit_test(triangles_cover_the_pixels_whose_centres_they_hold),
