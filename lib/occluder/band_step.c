@@ -13,6 +13,7 @@
 static const double REACHES[] = {1.0, 2.0, 4.0, 8.0};
 enum { REACH_COUNT = sizeof REACHES / sizeof *REACHES };
 static const double REACH_RESOLUTION = 256.0;
+enum { MOST_RESOLUTION = 640 }; // along the longest side, for an error that was asked for
 // Of what the touched voxels hide: a mesh that hides less has gaps that they do not show, as leaves
 // and twigs have: 0.1 to 0.5, where landscapes have 0.8 to 0.9.
 static const double WHOLE = 0.75;
@@ -38,14 +39,16 @@ static double GetReach(const pvtBuild* build, int number)
     return fmax(voxels, 1.0) * build->stats.voxelSize;
 }
 
-// Where a bound of the error is asked for, a wider one is no answer. What looks like a landscape
-// may have an inside in a few folds.
-bool pvtMayUseBand(const pvtBuild* build)
+// What looks like a landscape may have an inside in a few folds.
+static bool HasNoInside(const pvtBuild* build)
 {
     const double touched = (double)pvtBitGrid_Count(&build->solid.surface);
-    return pvtMayUseSheets(build) && build->options->error == 0.0 &&
-           (build->solid.remedy.terrain ||
-            (double)pvtBitGrid_Count(&build->allowed) < LEAST_INSIDE * touched);
+    return build->solid.remedy.terrain || (double)build->solid.strictCount < LEAST_INSIDE * touched;
+}
+
+bool pvtMayUseBand(const pvtBuild* build)
+{
+    return pvtMayUseSheets(build) && HasNoInside(build);
 }
 
 // Lets triangles lie in the touched voxels of `solid` and within `reach` [wu] of them.
@@ -158,14 +161,16 @@ static bool IsWhole(const Trial* trial, double voxels)
     return trial->whole >= WHOLE && trial->kept >= 1.0 - fmin(RIM_LOSS * voxels, MOST_LOSS);
 }
 
-// The narrowest band that is wide enough, or the widest; 0 where it would close gaps.
+// The narrowest band that is wide enough, or the widest; 0 where it would close gaps. With an error
+// that was asked for only whether there may be one.
 static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* reach)
 {
     const double whole = REACH_RESOLUTION / build->stats.resolution / build->stats.voxelSize;
     Trial trial = {0};
     pvtStatus status = PVT_OK;
     *reach = 0.0;
-    for (int i = 0; i < REACH_COUNT && trial.share < ENOUGH && status == PVT_OK; ++i) {
+    const int count = build->options->error > 0.0 ? 1 : REACH_COUNT;
+    for (int i = 0; i < count && trial.share < ENOUGH && status == PVT_OK; ++i) {
         const double next = GetReach(build, i);
         if (next > *reach) {
             *reach = next;
@@ -179,6 +184,16 @@ static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* r
     return status;
 }
 
+static void TellBand(pvtContext* context, const pvtBuild* build)
+{
+    const pvtBuildStats* stats = &build->stats;
+    pvtWarnOnce(context,
+                "there is next to nothing inside at %d voxels, and the surface is not flat: "
+                "triangles may stray from it by %.3g (%.3g voxels); --tolerance sets how far, "
+                "and a larger --budget needs less",
+                stats->resolution, stats->tolerance, stats->tolerance / stats->voxelSize);
+}
+
 static pvtStatus UseBand(pvtContext* context, pvtBuild* build, double reach)
 {
     pvtBuildStats* stats = &build->stats;
@@ -189,30 +204,66 @@ static pvtStatus UseBand(pvtContext* context, pvtBuild* build, double reach)
     build->isBand = true;
     const pvtStatus status = AllowBand(context, &build->solid, reach, build);
     stats->errorBound = fmax(stats->errorBound, sqrt(3.0) * stats->voxelSize + reach);
-    if (status == PVT_OK) {
-        pvtWarnOnce(context,
-                    "there is next to nothing inside at %d voxels, and the surface is not flat: "
-                    "triangles may stray from it by %.3g (%.3g voxels); --tolerance sets how far, "
-                    "and a larger --budget needs less",
-                    stats->resolution, reach, reach / stats->voxelSize);
-    }
     return status;
+}
+
+// A bound of the error leaves most to a band of small voxels; of those that are not too many the
+// smallest. 0: none.
+static double FindErrorReach(const pvtBuild* build)
+{
+    static const double voxels[] = {4.0, 2.0, 1.0};
+    for (int i = 0; i < 3; ++i) {
+        const double finer = (sqrt(3.0) + voxels[i]) / sqrt(3.0);
+        if (build->stats.resolution * finer <= MOST_RESOLUTION) {
+            return voxels[i];
+        }
+    }
+    return 0.0;
+}
+
+// From the beginning, with so many voxels as the tolerance, and the same error.
+static pvtStatus Restart(pvtContext* context, pvtBuild* build, double voxels)
+{
+    build->ownOptions = *build->options;
+    build->ownOptions.tolerance = (pvtLength){voxels, true};
+    pvtBuild_Free(context, build);
+    build->options = &build->ownOptions;
+    build->isBand = true;
+    pvtStatus status = pvtResolveSizes(context, build);
+    if (status == PVT_OK) {
+        status = pvtVoxelizeStep(context, build);
+    }
+    return status == PVT_OK ? pvtFillStep(context, build) : status;
+}
+
+static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
+{
+    double reach = 0.0;
+    pvtStatus status = FindReach(context, build, &reach);
+    if (status != PVT_OK || reach == 0.0) {
+        return status;
+    }
+    if (build->options->error == 0.0) {
+        return UseBand(context, build, reach);
+    }
+    const double voxels = FindErrorReach(build);
+    return voxels > 0.0 ? Restart(context, build, voxels) : PVT_OK;
 }
 
 pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
 {
-    double reach = 0.0;
     pvtStatus status = PVT_OK;
     if (pvtMayUseBand(build)) {
         Trial trial = {0};
         status = build->isFlat ? TrySheets(context, build, &trial) : PVT_OK;
         if (status == PVT_OK && trial.share < ENOUGH) {
-            status = FindReach(context, build, &reach);
+            status = TryBand(context, build);
         }
     }
-    if (status == PVT_OK) {
-        status =
-            reach > 0.0 ? UseBand(context, build, reach) : pvtSheetStepWithoutBand(context, build);
+    if (status == PVT_OK && !build->isBand) {
+        status = pvtSheetStepWithoutBand(context, build);
+    } else if (status == PVT_OK) {
+        TellBand(context, build);
     }
     return status;
 }
