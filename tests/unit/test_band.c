@@ -226,7 +226,7 @@ static void MakeLeaves(pvtContext* context, pvtMesh* mesh)
 // but a quarter of what is behind can be seen.
 static void MakeRibbons(pvtContext* context, pvtMesh* mesh)
 {
-    enum { RIBBONS = 200, STEPS = 24, CORNERS = 2 * RIBBONS * (STEPS + 1) };
+    enum { RIBBONS = 100, STEPS = 12, CORNERS = 2 * RIBBONS * (STEPS + 1) };
     pvtVec3* positions = calloc(CORNERS, sizeof *positions);
     uint32_t* indices = calloc((size_t)6 * RIBBONS * STEPS, sizeof *indices);
     assert_non_null(positions);
