@@ -23,6 +23,8 @@ static const double RIM_LOSS = 0.05, MOST_LOSS = 0.28;
 // Of what the surface hides: where a selection without refinement hides this part of it, nearly all
 // is hidden in the end; with half of this next to nothing.
 static const double ENOUGH = 0.5;
+// Of the surface: where sheets take less it is not flat, and a selection need not be tried.
+static const double FLAT_SHARE = 0.5;
 // Of the touched voxels: an inside of fewer is none.
 static const double LEAST_INSIDE = 0.01;
 
@@ -255,7 +257,7 @@ pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
     pvtStatus status = PVT_OK;
     if (pvtMayUseBand(build)) {
         Trial trial = {0};
-        status = build->isFlat ? TrySheets(context, build, &trial) : PVT_OK;
+        status = build->sheetShare >= FLAT_SHARE ? TrySheets(context, build, &trial) : PVT_OK;
         if (status == PVT_OK && trial.share < ENOUGH) {
             status = TryBand(context, build);
         }

@@ -67,6 +67,45 @@ bool pvtIsPointSimple(const pvtPoint2* points, size_t count, size_t index)
            IsEdgeFree(points, count, (index + count - 1) % count);
 }
 
+static bool IsSamePoint(pvtPoint2 a, pvtPoint2 b)
+{
+    return a.x == b.x && a.y == b.y;
+}
+
+// Whether they have more in common than an end of both, or a bridge, which is there twice.
+static bool DoEdgesCross(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
+{
+    const bool isAtA = IsSamePoint(a, c) || IsSamePoint(a, d);
+    const bool isAtB = IsSamePoint(b, c) || IsSamePoint(b, d);
+    if (isAtA && isAtB) {
+        return false;
+    }
+    if (!isAtA && !isAtB) {
+        return DoSegmentsMeet(a, b, c, d);
+    }
+    const pvtPoint2 end = isAtA ? b : a;
+    const pvtPoint2 shared = isAtA ? a : b;
+    return IsOnSegment(end, c, d) || IsOnSegment(IsSamePoint(shared, c) ? d : c, a, b);
+}
+
+bool pvtIsPointFree(const pvtPoint2* points, size_t count, size_t index)
+{
+    const size_t before = (index + count - 1) % count;
+    for (size_t side = 0; side < 2; ++side) {
+        const size_t i = side == 0 ? before : index;
+        const pvtPoint2 a = points[i], b = points[(i + 1) % count];
+        if (IsSamePoint(a, b)) {
+            return false;
+        }
+        for (size_t j = 0; j < count; ++j) {
+            if (j != i && DoEdgesCross(a, b, points[j], points[(j + 1) % count])) {
+                return false;
+            }
+        }
+    }
+    return pvtGetLoopArea2(points, count) > 0;
+}
+
 bool pvtIsPolygonSimple(const pvtPoint2* points, size_t count)
 {
     if (count < 3 || pvtGetLoopArea2(points, count) <= 0) {

@@ -18,4 +18,8 @@ bool pvtIsPolygonSimple(const pvtPoint2* points, size_t count);
 /// True when the two edges at point `index` meet no other edge, given that all others are fine.
 bool pvtIsPointSimple(const pvtPoint2* points, size_t count, size_t index);
 
+/// Whether the edges at this point cross no others of a polygon with bridges: these may touch
+/// themselves, and others may end where they do.
+bool pvtIsPointFree(const pvtPoint2* points, size_t count, size_t index);
+
 #endif

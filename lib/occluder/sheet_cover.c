@@ -428,38 +428,78 @@ pvtStatus pvtCoverPlane(pvtContext* context, const pvtSheetSoup* soup, const pvt
     return status;
 }
 
+typedef struct pvtShapeBox {
+    double low[2], high[2];
+} Box;
+
+static Box GetBox(const Point* points, int count)
+{
+    Span x = {HUGE_VAL, -HUGE_VAL}, y = x;
+    for (int i = 0; i < count; ++i) {
+        Widen(&x, points[i].x);
+        Widen(&y, points[i].y);
+    }
+    return (Box){{x.low, y.low}, {x.high, y.high}};
+}
+
 pvtStatus pvtCollectPlaneShapes(pvtContext* context, const pvtSheetSoup* soup,
                                 const pvtPlane* plane, double distance, pvtPlaneShapes* shapes)
 {
     Cover cover = {
         .context = context, .soup = soup, .plane = plane, .reach = distance, .scale = 1.0};
-    const pvtStatus status = CollectShapes(&cover, distance);
-    *shapes = (pvtPlaneShapes){cover.shapes, cover.shapeCount};
+    pvtStatus status = CollectShapes(&cover, distance);
+    *shapes = (pvtPlaneShapes){.shapes = cover.shapes, .count = cover.shapeCount};
+    if (status == PVT_OK) {
+        shapes->boxes = pvtAllocate(context, shapes->count, sizeof *shapes->boxes);
+        status = shapes->boxes == NULL ? pvtContext_GetStatus(context) : PVT_OK;
+    }
     if (status != PVT_OK) {
         pvtPlaneShapes_Free(context, shapes);
+        return status;
     }
-    return status;
+    for (size_t i = 0; i < shapes->count; ++i) {
+        shapes->boxes[i] = GetBox(shapes->shapes[i].points, shapes->shapes[i].count);
+    }
+    return PVT_OK;
 }
 
 void pvtPlaneShapes_Free(pvtContext* context, pvtPlaneShapes* shapes)
 {
     pvtRelease(context, shapes->shapes);
+    pvtRelease(context, shapes->boxes);
     *shapes = (pvtPlaneShapes){0};
 }
 
-// Whether their boxes are apart.
-static bool IsClear(const Clipped* shape, const Shape* triangle)
+static bool AreApart(const Box* a, const Box* b)
 {
-    Span x = {HUGE_VAL, -HUGE_VAL}, y = x, u = x, v = x;
-    for (int i = 0; i < shape->count; ++i) {
-        Widen(&x, shape->points[i].x);
-        Widen(&y, shape->points[i].y);
+    return a->low[0] >= b->high[0] || a->high[0] <= b->low[0] || a->low[1] >= b->high[1] ||
+           a->high[1] <= b->low[1];
+}
+
+// Points near the corners and in the middle, each in some shape: what is not covered fails here.
+static bool MayCover(const pvtPlaneShapes* shapes, const Shape* triangle)
+{
+    enum { POINTS = 4 };
+    for (int i = 0; i < POINTS; ++i) {
+        const double most = 0.9;
+        double x = 0.0, y = 0.0;
+        for (int k = 0; k < 3; ++k) {
+            const double share = i == 3 ? 1.0 / 3.0 : k == i ? most : 0.5 * (1.0 - most);
+            x += share * triangle->points[k].x;
+            y += share * triangle->points[k].y;
+        }
+        bool isInside = false;
+        for (size_t s = 0; s < shapes->count && !isInside; ++s) {
+            const Box* box = &shapes->boxes[s];
+            isInside = x >= box->low[0] - NEAR && x <= box->high[0] + NEAR &&
+                       y >= box->low[1] - NEAR && y <= box->high[1] + NEAR &&
+                       IsInside(&shapes->shapes[s], x, y);
+        }
+        if (!isInside) {
+            return false;
+        }
     }
-    for (int i = 0; i < triangle->count; ++i) {
-        Widen(&u, triangle->points[i].x);
-        Widen(&v, triangle->points[i].y);
-    }
-    return x.low >= u.high || x.high <= u.low || y.low >= v.high || y.high <= v.low;
+    return true;
 }
 
 bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle[3])
@@ -475,12 +515,16 @@ bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle
         whole.points[1] = whole.points[2];
         whole.points[2] = swap;
     }
+    if (!MayCover(shapes, &whole)) {
+        return false;
+    }
+    const Box box = GetBox(whole.points, 3);
     Shape buffers[2][MAX_PIECES];
     int now = 0;
     int left = 1;
     buffers[0][0] = whole;
     for (size_t i = 0; i < shapes->count && left > 0; ++i) {
-        if (IsClear(&shapes->shapes[i], &whole)) {
+        if (AreApart(&shapes->boxes[i], &box)) {
             continue;
         }
         const int before = left;

@@ -14,6 +14,7 @@ pvtStatus pvtCoverPlane(pvtContext* context, const pvtSheetSoup* soup, const pvt
 /// What is within `distance` of a plane, as it is seen along its axis.
 typedef struct pvtPlaneShapes {
     struct pvtClipped* shapes;
+    struct pvtShapeBox* boxes; ///< around each
     size_t count;
 } pvtPlaneShapes;
 

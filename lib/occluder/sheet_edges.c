@@ -8,6 +8,9 @@
 #include "fit.h"
 #include "occluder.h"
 
+#include <math.h>
+#include <string.h>
+
 enum { FINER = 4, ROUNDS = 4, MAX_CELLS = 8192, MAX_TRIANGLES = 50000, MAX_SHAPES = 4096 };
 
 typedef struct EdgeTask {
@@ -16,7 +19,8 @@ typedef struct EdgeTask {
     const pvtSheetSoup* soup;
     double deviation;
     pvtOccluder* occluder;
-    pvtStatus* statuses; // one a polygon
+    pvtStatus* statuses; // one a sheet
+    size_t* counts;      // one a polygon: of the points that are left of it
 } EdgeTask;
 
 // Where corners may move: on cells, or on shapes.
@@ -41,14 +45,51 @@ static bool MayMove(const Room* room, pvtPoint2* points, size_t count, size_t in
     const pvtPoint2 after = points[(index + 1) % count];
     const pvtPoint2 now[3] = {before, here, after};
     const pvtPoint2 then[3] = {before, there, after};
-    const pvtPoint2 swept[2][3] = {{before, here, there}, {here, after, there}};
+    // The short edges first, then the new ones: most moves fail there.
+    const pvtPoint2 swept[2][3] = {{here, there, before}, {here, there, after}};
     if (there.x < 0 || there.y < 0 || pvtGetLoopArea2(then, 3) <= pvtGetLoopArea2(now, 3)) {
         return false;
     }
     points[index] = there;
-    const bool isSimple = pvtIsPointSimple(points, count, index);
+    const bool isFree = pvtIsPointFree(points, count, index);
     points[index] = here;
-    return isSimple && IsWithin(room, swept[0]) && IsWithin(room, swept[1]);
+    return isFree && IsWithin(room, swept[0]) && IsWithin(room, swept[1]);
+}
+
+// `step` further along the edge from `before` to `here`.
+static pvtPoint2 GetBeyond(pvtPoint2 before, pvtPoint2 here, int32_t step)
+{
+    const double dx = here.x - before.x, dy = here.y - before.y;
+    const double length = hypot(dx, dy);
+    const double part = length > 0.0 ? step / length : 0.0;
+    return (pvtPoint2){here.x + (int32_t)lround(part * dx), here.y + (int32_t)lround(part * dy)};
+}
+
+// In eight directions, and along its two edges: what ends on a slant gets to its end that way.
+static void MoveCorner(const Room* room, int32_t step, pvtPoint2* points, size_t count, size_t i)
+{
+    enum { WAYS = 9 };
+    for (int way = 0; way < WAYS; ++way) {
+        const pvtPoint2 there = {points[i].x + (way % 3 - 1) * step,
+                                 points[i].y + (way / 3 - 1) * step};
+        if (MayMove(room, points, count, i, there)) {
+            points[i] = there;
+        }
+    }
+    for (size_t side = 0; side < 2; ++side) {
+        const pvtPoint2 from = points[(i + (side == 0 ? count - 1 : 1)) % count];
+        const pvtPoint2 beyond = GetBeyond(from, points[i], step);
+        // Rounding may lead out of the room; of shapes, which take long to ask, that is left at it.
+        const int ways = room->cells != NULL ? WAYS : 1;
+        for (int way = 0; way < ways; ++way) {
+            const pvtPoint2 there = {beyond.x + (way + 4) % WAYS % 3 - 1,
+                                     beyond.y + (way + 4) % WAYS / 3 - 1};
+            if (MayMove(room, points, count, i, there)) {
+                points[i] = there;
+                break;
+            }
+        }
+    }
 }
 
 // Each corner, in steps that halve from the first to the second, in point units.
@@ -57,44 +98,92 @@ static void MoveCorners(const Room* room, const int32_t steps[2], pvtPoint2* poi
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < count; ++i) {
             for (int32_t step = steps[0]; step >= steps[1]; step /= 2) {
-                for (int way = 0; way < 9; ++way) {
-                    const pvtPoint2 there = {points[i].x + (way % 3 - 1) * step,
-                                             points[i].y + (way / 3 - 1) * step};
-                    if (MayMove(room, points, count, i, there)) {
-                        points[i] = there;
-                    }
-                }
+                MoveCorner(room, step, points, count, i);
             }
         }
     }
 }
 
-// The last sixteenth of a voxel, exactly; where there are few triangles, as on walls.
-static pvtStatus MoveExactly(const EdgeTask* task, const pvtPlane* plane, pvtPoint2* points,
-                             size_t count)
+// Whether another corner is in the same place, as at the ends of a bridge.
+static bool IsDouble(const pvtPoint2* points, size_t count, size_t index)
 {
+    for (size_t i = 0; i < count; ++i) {
+        if (i != index && points[i].x == points[index].x && points[i].y == points[index].y) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Notches, as the steps of cells along a slanted edge leave, are filled where the room allows:
+// their corner goes. Returns how many points are left.
+static size_t FillNotches(const Room* room, pvtPoint2* points, size_t count)
+{
+    for (size_t i = 0; i < count && count > 3;) {
+        const pvtPoint2 here = points[i];
+        const pvtPoint2 before = points[(i + count - 1) % count];
+        const pvtPoint2 after = points[(i + 1) % count];
+        const pvtPoint2 notch[3] = {before, after, here};
+        bool isFilled =
+            pvtGetLoopArea2(notch, 3) >= 0 && !IsDouble(points, count, i) && IsWithin(room, notch);
+        if (isFilled) {
+            memmove(points + i, points + i + 1, (count - i - 1) * sizeof *points);
+            // The edge that closes it is one of those at the corner before.
+            isFilled = pvtIsPointFree(points, count - 1, (i + count - 2) % (count - 1));
+            if (!isFilled) {
+                memmove(points + i + 1, points + i, (count - i - 1) * sizeof *points);
+                points[i] = here;
+            }
+        }
+        count -= isFilled ? 1 : 0;
+        i += isFilled ? 0 : 1;
+    }
+    return count;
+}
+
+// On the cells, and then the last sixteenth of a voxel exactly, where there are few triangles, as
+// on walls.
+static void GrowPolygon(const Room* coarse, const Room* exact, pvtPoint2* points, size_t* count)
+{
+    const int32_t unit = (1 << PVT_POINT_BITS) / coarse->cellsPerVoxel;
+    MoveCorners(coarse, (int32_t[2]){FINER * unit, unit > 4 ? unit / 4 : 1}, points, *count);
+    if (exact->shapes->count <= MAX_SHAPES) {
+        *count = FillNotches(exact, points, *count);
+        MoveCorners(exact, (int32_t[2]){(1 << PVT_POINT_BITS) / 16, 1}, points, *count);
+        *count = FillNotches(exact, points, *count);
+    }
+}
+
+// All polygons that lie on a sheet.
+static pvtStatus GrowPolygons(const EdgeTask* task, const pvtSheet* sheet, const pvtBitmap* cells)
+{
+    const pvtPlane* plane = &sheet->plane;
+    const pvtLoopSet* loops = &task->occluder->loops;
     pvtPlaneShapes shapes;
     const pvtStatus status =
         pvtCollectPlaneShapes(task->context, task->soup, plane, task->deviation, &shapes);
-    if (status == PVT_OK && shapes.count <= MAX_SHAPES) {
-        const Room room = {.shapes = &shapes};
-        MoveCorners(&room, (int32_t[2]){(1 << PVT_POINT_BITS) / 16, 1}, points, count);
+    const Room coarse = {.cells = cells, .cellsPerVoxel = FINER * task->sheets->cellsPerVoxel};
+    const Room exact = {.shapes = &shapes};
+    for (size_t p = 0; p < loops->loopCount && status == PVT_OK; ++p) {
+        if (pvtSheetSet_Find(task->sheets, &task->occluder->planes[p]) == sheet) {
+            GrowPolygon(&coarse, &exact, loops->points + loops->starts[p], &task->counts[p]);
+        }
     }
     pvtPlaneShapes_Free(task->context, &shapes);
     return status;
 }
 
-static pvtStatus GrowPolygon(const EdgeTask* task, size_t polygon)
+static pvtStatus GrowOnSheet(const EdgeTask* task, const pvtSheet* sheet)
 {
-    const pvtPlane* plane = &task->occluder->planes[polygon];
-    const pvtLoopSet* loops = &task->occluder->loops;
-    if (pvtSheetSet_Find(task->sheets, plane) == NULL) {
-        return PVT_OK;
+    const pvtPlane* plane = &sheet->plane;
+    bool isUsed = false;
+    for (size_t p = 0; p < task->occluder->loops.loopCount && !isUsed; ++p) {
+        isUsed = pvtSheetSet_Find(task->sheets, &task->occluder->planes[p]) == sheet;
     }
     const int scale = FINER * task->sheets->cellsPerVoxel;
     const int width = task->soup->frame.size[pvtPlane_GetU(plane)] * scale;
     const int height = task->soup->frame.size[pvtPlane_GetV(plane)] * scale;
-    if (width > MAX_CELLS || height > MAX_CELLS) {
+    if (!isUsed || width > MAX_CELLS || height > MAX_CELLS) {
         return PVT_OK;
     }
     pvtBitmap cells;
@@ -102,24 +191,35 @@ static pvtStatus GrowPolygon(const EdgeTask* task, size_t polygon)
     if (status == PVT_OK) {
         status = pvtCoverPlane(task->context, task->soup, plane, task->deviation, scale, &cells);
     }
-    pvtPoint2* points = loops->points + loops->starts[polygon];
-    const size_t count = loops->starts[polygon + 1] - loops->starts[polygon];
     if (status == PVT_OK) {
-        const Room room = {.cells = &cells, .cellsPerVoxel = scale};
-        const int32_t unit = (1 << PVT_POINT_BITS) / scale;
-        MoveCorners(&room, (int32_t[2]){FINER * unit, unit > 4 ? unit / 4 : 1}, points, count);
-        status = MoveExactly(task, plane, points, count);
+        status = GrowPolygons(task, sheet, &cells);
     }
     pvtBitmap_Free(task->context, &cells);
     return status;
+}
+
+// Points stand one polygon behind the other again.
+static void PackPoints(const size_t* counts, pvtLoopSet* loops)
+{
+    size_t next = 0;
+    for (size_t p = 0; p < loops->loopCount; ++p) {
+        memmove(loops->points + next, loops->points + loops->starts[p],
+                counts[p] * sizeof *loops->points);
+        loops->starts[p] = next;
+        next += counts[p];
+    }
+    loops->starts[loops->loopCount] = next;
+    loops->pointCount = next;
 }
 
 static void RunGrow(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     EdgeTask* task = taskData;
-    for (size_t p = begin; p < end; ++p) {
-        task->statuses[p] = pvtIsCancelled(task->context) ? PVT_CANCELLED : GrowPolygon(task, p);
+    for (size_t s = begin; s < end; ++s) {
+        task->statuses[s] = pvtIsCancelled(task->context)
+                                ? PVT_CANCELLED
+                                : GrowOnSheet(task, &task->sheets->sheets[s]);
     }
 }
 
@@ -132,20 +232,26 @@ pvtStatus pvtGrowSheetPanels(pvtContext* context, const pvtSheetSet* sheets, dou
     }
     pvtSheetSoup soup;
     pvtStatus status = pvtCreateSheetSoup(context, mesh, &occluder->frame, &soup);
-    pvtStatus* statuses = pvtAllocate(context, count, sizeof *statuses);
-    if (status == PVT_OK && statuses == NULL) {
+    pvtStatus* statuses = pvtAllocate(context, sheets->count, sizeof *statuses);
+    size_t* counts = pvtAllocate(context, count, sizeof *counts);
+    if (status == PVT_OK && (statuses == NULL || counts == NULL)) {
         status = pvtContext_GetStatus(context);
     }
-    if (status == PVT_OK && statuses != NULL) {
-        EdgeTask task = {context, sheets, &soup, deviation, occluder, statuses};
-        pvtParallelFor(context, RunGrow, count, 1, &task);
+    if (status == PVT_OK && statuses != NULL && counts != NULL) {
+        EdgeTask task = {context, sheets, &soup, deviation, occluder, statuses, counts};
+        for (size_t p = 0; p < count; ++p) {
+            counts[p] = occluder->loops.starts[p + 1] - occluder->loops.starts[p];
+        }
+        pvtParallelFor(context, RunGrow, sheets->count, 1, &task);
     }
-    for (size_t p = 0; p < count && status == PVT_OK && statuses != NULL; ++p) {
-        status = statuses[p];
+    for (size_t s = 0; s < sheets->count && status == PVT_OK && statuses != NULL; ++s) {
+        status = statuses[s];
     }
-    if (status == PVT_OK) {
+    if (status == PVT_OK && counts != NULL) {
+        PackPoints(counts, &occluder->loops);
         status = pvtMakeOccluderMesh(context, occluder);
     }
+    pvtRelease(context, counts);
     pvtRelease(context, statuses);
     pvtSheetSoup_Free(context, &soup);
     return status == PVT_CANCELLED ? pvtFailCancelled(context) : status;

@@ -20,8 +20,6 @@ enum { DEVIATION_COUNT = sizeof DEVIATIONS / sizeof *DEVIATIONS };
 // Sheets that take this part of the surface need not lie any farther off; nearly all of it, where
 // the next step is a small one.
 static const double ENOUGH[] = {0.9, 0.5, 0.5};
-// Where they take this part of it the surface is flat: a quick selection tells how much they hide.
-static const double FLAT_SHARE = 0.5;
 // Less than this is not flat a little farther off, either: a band is tried first.
 static const double HOPELESS = 0.25;
 
@@ -99,18 +97,19 @@ static void WidenBySheets(pvtBuild* build)
 static pvtStatus FindClosestSheets(pvtContext* context, pvtBuild* build, bool isLast)
 {
     const double most = GetMostDeviation(build);
-    double share = 0.0;
     pvtStatus status = PVT_OK;
     for (int i = build->triedDeviations; i < DEVIATION_COUNT && DEVIATIONS[i] <= most; ++i) {
+        if (i > 0 && build->sheetShare >= ENOUGH[i - 1]) {
+            return PVT_OK;
+        }
         status = FindSheets(context, build, DEVIATIONS[i]);
         build->triedDeviations = i + 1;
         // Without any bare surface all of it has an inside behind it.
         if (status != PVT_OK || build->sheets.bare <= 0.0) {
             return status;
         }
-        status = GetShare(context, build, &share);
-        build->isFlat = share >= FLAT_SHARE;
-        if (status != PVT_OK || share >= ENOUGH[i] || (!isLast && share < HOPELESS)) {
+        status = GetShare(context, build, &build->sheetShare);
+        if (status != PVT_OK || (!isLast && build->sheetShare < HOPELESS)) {
             return status;
         }
     }

@@ -27,10 +27,10 @@ typedef struct pvtBuild {
     pvtSlicer slicer;
     bool hasSlicer;
     pvtSectionSet sections;
-    pvtSheetSet sheets;         ///< empty where the strict interior does
-    double deviation;           ///< [vx] of the surface from them
-    int triedDeviations;        ///< of those that sheets are looked for with
-    bool isFlat;                ///< whether sheets take much of the surface
+    pvtSheetSet sheets;  ///< empty where the strict interior does
+    double deviation;    ///< [vx] of the surface from them
+    int triedDeviations; ///< of those that sheets are looked for with
+    double sheetShare;   ///< of the surface without an inside behind it, that the best sheets take
     pvtBuildOptions ownOptions; ///< what `options` are where a band replaces them
     bool isBand;                ///< whether triangles lie within a band around the surface instead
     pvtBitGrid hiding; ///< the allowed voxels and those that the sheets pass; may have no words
