@@ -72,13 +72,14 @@ static bool IsSamePoint(pvtPoint2 a, pvtPoint2 b)
     return a.x == b.x && a.y == b.y;
 }
 
-// Whether they have more in common than an end of both, or a bridge, which is there twice.
+// Whether they have more in common than an end of both, or a bridge, which is there in both
+// directions.
 static bool DoEdgesCross(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
 {
     const bool isAtA = IsSamePoint(a, c) || IsSamePoint(a, d);
     const bool isAtB = IsSamePoint(b, c) || IsSamePoint(b, d);
     if (isAtA && isAtB) {
-        return false;
+        return IsSamePoint(a, c);
     }
     if (!isAtA && !isAtB) {
         return DoSegmentsMeet(a, b, c, d);
@@ -104,6 +105,23 @@ bool pvtIsPointFree(const pvtPoint2* points, size_t count, size_t index)
         }
     }
     return pvtGetLoopArea2(points, count) > 0;
+}
+
+int pvtGetWinding(const pvtPoint2* points, size_t count, const pvtPoint2 triangle[3])
+{
+    // Three times as large, the middle has whole coordinates.
+    const int64_t x = (int64_t)triangle[0].x + triangle[1].x + triangle[2].x;
+    const int64_t y = (int64_t)triangle[0].y + triangle[1].y + triangle[2].y;
+    int winding = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const pvtPoint2 a = points[i], b = points[(i + 1) % count];
+        const int64_t ax = 3 * (int64_t)a.x - x, ay = 3 * (int64_t)a.y - y;
+        const int64_t bx = 3 * (int64_t)b.x - x, by = 3 * (int64_t)b.y - y;
+        const int64_t side = ax * by - bx * ay;
+        winding += ay <= 0 && by > 0 && side > 0 ? 1 : 0;
+        winding -= ay > 0 && by <= 0 && side < 0 ? 1 : 0;
+    }
+    return winding;
 }
 
 bool pvtIsPolygonSimple(const pvtPoint2* points, size_t count)

@@ -18,8 +18,11 @@ bool pvtIsPolygonSimple(const pvtPoint2* points, size_t count);
 /// True when the two edges at point `index` meet no other edge, given that all others are fine.
 bool pvtIsPointSimple(const pvtPoint2* points, size_t count, size_t index);
 
-/// Whether the edges at this point cross no others of a polygon with bridges: these may touch
-/// themselves, and others may end where they do.
+/// The same for a polygon with bridges: edges may end in the same point, and the two that a bridge
+/// is may lie on each other.
 bool pvtIsPointFree(const pvtPoint2* points, size_t count, size_t index);
+
+/// How often the polygon runs around the middle of the triangle.
+int pvtGetWinding(const pvtPoint2* points, size_t count, const pvtPoint2 triangle[3]);
 
 #endif

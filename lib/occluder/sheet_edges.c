@@ -19,8 +19,9 @@ typedef struct EdgeTask {
     const pvtSheetSoup* soup;
     double deviation;
     pvtOccluder* occluder;
-    pvtStatus* statuses; // one a sheet
+    const pvtSheet** on; // one a polygon: the sheet that it lies on, or null
     size_t* counts;      // one a polygon: of the points that are left of it
+    pvtStatus* statuses; // one a sheet
 } EdgeTask;
 
 // Where corners may move: on cells, or on shapes.
@@ -36,6 +37,14 @@ static bool IsWithin(const Room* room, const pvtPoint2 triangle[3])
                                : pvtPlaneShapes_Cover(room->shapes, triangle);
 }
 
+// Whether what a corner sweeps is wholly outside of the polygon where it is added, or inside of it
+// where it is taken away, as it is unless the polygon runs over itself.
+static bool IsSweepClear(const pvtPoint2* points, size_t count, const pvtPoint2 swept[3])
+{
+    const int64_t area = pvtGetLoopArea2(swept, 3);
+    return area == 0 || pvtGetWinding(points, count, swept) == (area > 0 ? 0 : 1);
+}
+
 // Whether corner `index` may move there: what is added lies in the room, and the polygon grows.
 static bool MayMove(const Room* room, pvtPoint2* points, size_t count, size_t index,
                     pvtPoint2 there)
@@ -47,7 +56,9 @@ static bool MayMove(const Room* room, pvtPoint2* points, size_t count, size_t in
     const pvtPoint2 then[3] = {before, there, after};
     // The short edges first, then the new ones: most moves fail there.
     const pvtPoint2 swept[2][3] = {{here, there, before}, {here, there, after}};
-    if (there.x < 0 || there.y < 0 || pvtGetLoopArea2(then, 3) <= pvtGetLoopArea2(now, 3)) {
+    const pvtPoint2 added[2][3] = {{before, there, here}, {here, there, after}};
+    if (there.x < 0 || there.y < 0 || pvtGetLoopArea2(then, 3) <= pvtGetLoopArea2(now, 3) ||
+        !IsSweepClear(points, count, added[0]) || !IsSweepClear(points, count, added[1])) {
         return false;
     }
     points[index] = there;
@@ -104,69 +115,130 @@ static void MoveCorners(const Room* room, const int32_t steps[2], pvtPoint2* poi
     }
 }
 
+static bool AreEqual(pvtPoint2 a, pvtPoint2 b)
+{
+    return a.x == b.x && a.y == b.y;
+}
+
 // Whether another corner is in the same place, as at the ends of a bridge.
 static bool IsDouble(const pvtPoint2* points, size_t count, size_t index)
 {
     for (size_t i = 0; i < count; ++i) {
-        if (i != index && points[i].x == points[index].x && points[i].y == points[index].y) {
+        if (i != index && AreEqual(points[i], points[index])) {
             return true;
         }
     }
     return false;
 }
 
-// Notches, as the steps of cells along a slanted edge leave, are filled where the room allows:
-// their corner goes. Returns how many points are left.
+static void RemovePoint(pvtPoint2* points, size_t count, size_t index)
+{
+    memmove(points + index, points + index + 1, (count - index - 1) * sizeof *points);
+}
+
+// Whether the corner of a notch went: where all of the notch lies in the room.
+static bool FillNotch(const Room* room, pvtPoint2* points, size_t count, size_t i)
+{
+    const pvtPoint2 here = points[i];
+    const pvtPoint2 notch[3] = {points[(i + count - 1) % count], points[(i + 1) % count], here};
+    if (pvtGetLoopArea2(notch, 3) < 0 || IsDouble(points, count, i) ||
+        !IsSweepClear(points, count, notch) || !IsWithin(room, notch)) {
+        return false;
+    }
+    RemovePoint(points, count, i);
+    // The edge that closes it is one of those at the corner before.
+    if (pvtIsPointFree(points, count - 1, (i + count - 2) % (count - 1))) {
+        return true;
+    }
+    memmove(points + i + 1, points + i, (count - i - 1) * sizeof *points);
+    points[i] = here;
+    return false;
+}
+
+// Notches, as the steps of cells along a slanted edge leave, are filled, and spikes go that holes
+// leave which were filled. Returns how many points are left.
 static size_t FillNotches(const Room* room, pvtPoint2* points, size_t count)
 {
     for (size_t i = 0; i < count && count > 3;) {
-        const pvtPoint2 here = points[i];
-        const pvtPoint2 before = points[(i + count - 1) % count];
-        const pvtPoint2 after = points[(i + 1) % count];
-        const pvtPoint2 notch[3] = {before, after, here};
-        bool isFilled =
-            pvtGetLoopArea2(notch, 3) >= 0 && !IsDouble(points, count, i) && IsWithin(room, notch);
-        if (isFilled) {
-            memmove(points + i, points + i + 1, (count - i - 1) * sizeof *points);
-            // The edge that closes it is one of those at the corner before.
-            isFilled = pvtIsPointFree(points, count - 1, (i + count - 2) % (count - 1));
-            if (!isFilled) {
-                memmove(points + i + 1, points + i, (count - i - 1) * sizeof *points);
-                points[i] = here;
-            }
+        const bool isSpike =
+            count > 4 && AreEqual(points[(i + count - 1) % count], points[(i + 1) % count]);
+        if (isSpike) {
+            const size_t after = (i + 1) % count;
+            RemovePoint(points, count, after > i ? after : i);
+            RemovePoint(points, count - 1, after > i ? i : after);
+            count -= 2;
+            i = 0;
+        } else if (FillNotch(room, points, count, i)) {
+            --count;
+        } else {
+            ++i;
         }
-        count -= isFilled ? 1 : 0;
-        i += isFilled ? 0 : 1;
     }
     return count;
 }
 
+// Whether triangles of it lie beside each other.
+static pvtStatus TestPolygon(pvtContext* context, const pvtPoint2* points, size_t count,
+                             bool* isSound)
+{
+    uint32_t* indices = pvtAllocate(context, 3 * (count - 2), sizeof *indices);
+    if (indices == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    const pvtStatus status = pvtTriangulatePolygon(context, points, count, indices);
+    *isSound = status == PVT_OK;
+    for (size_t t = 0; t < count - 2 && *isSound; ++t) {
+        const uint32_t* corners = indices + 3 * t;
+        const pvtPoint2 triangle[3] = {points[corners[0]], points[corners[1]], points[corners[2]]};
+        *isSound = pvtGetLoopArea2(triangle, 3) == 0 || pvtGetWinding(points, count, triangle) == 1;
+    }
+    pvtRelease(context, indices);
+    return status == PVT_INVALID_ARGUMENT ? PVT_OK : status;
+}
+
 // On the cells, and then the last sixteenth of a voxel exactly, where there are few triangles, as
-// on walls.
-static void GrowPolygon(const Room* coarse, const Room* exact, pvtPoint2* points, size_t* count)
+// on walls. A polygon that would run over itself stays as it was.
+static pvtStatus GrowPolygon(pvtContext* context, const Room* coarse, const Room* exact,
+                             pvtPoint2* points, size_t* count)
 {
     const int32_t unit = (1 << PVT_POINT_BITS) / coarse->cellsPerVoxel;
-    MoveCorners(coarse, (int32_t[2]){FINER * unit, unit > 4 ? unit / 4 : 1}, points, *count);
+    const size_t before = *count;
+    pvtPoint2* kept = pvtAllocate(context, before, sizeof *kept);
+    if (kept == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    memcpy(kept, points, before * sizeof *kept);
+    MoveCorners(coarse, (int32_t[2]){FINER * unit, unit > 4 ? unit / 4 : 1}, points, before);
     if (exact->shapes->count <= MAX_SHAPES) {
         *count = FillNotches(exact, points, *count);
         MoveCorners(exact, (int32_t[2]){(1 << PVT_POINT_BITS) / 16, 1}, points, *count);
         *count = FillNotches(exact, points, *count);
     }
+    bool isSound = false;
+    const pvtStatus status = TestPolygon(context, points, *count, &isSound);
+    if (!isSound) {
+        memcpy(points, kept, before * sizeof *kept);
+        *count = before;
+    }
+    pvtRelease(context, kept);
+    return status;
 }
 
 // All polygons that lie on a sheet.
 static pvtStatus GrowPolygons(const EdgeTask* task, const pvtSheet* sheet, const pvtBitmap* cells)
 {
-    const pvtPlane* plane = &sheet->plane;
     const pvtLoopSet* loops = &task->occluder->loops;
     pvtPlaneShapes shapes;
-    const pvtStatus status =
-        pvtCollectPlaneShapes(task->context, task->soup, plane, task->deviation, &shapes);
+    pvtStatus status =
+        pvtCollectPlaneShapes(task->context, task->soup, &sheet->plane, task->deviation, &shapes);
     const Room coarse = {.cells = cells, .cellsPerVoxel = FINER * task->sheets->cellsPerVoxel};
     const Room exact = {.shapes = &shapes};
     for (size_t p = 0; p < loops->loopCount && status == PVT_OK; ++p) {
-        if (pvtSheetSet_Find(task->sheets, &task->occluder->planes[p]) == sheet) {
-            GrowPolygon(&coarse, &exact, loops->points + loops->starts[p], &task->counts[p]);
+        if (pvtIsCancelled(task->context)) {
+            status = PVT_CANCELLED;
+        } else if (task->on[p] == sheet) {
+            status = GrowPolygon(task->context, &coarse, &exact, loops->points + loops->starts[p],
+                                 &task->counts[p]);
         }
     }
     pvtPlaneShapes_Free(task->context, &shapes);
@@ -178,7 +250,7 @@ static pvtStatus GrowOnSheet(const EdgeTask* task, const pvtSheet* sheet)
     const pvtPlane* plane = &sheet->plane;
     bool isUsed = false;
     for (size_t p = 0; p < task->occluder->loops.loopCount && !isUsed; ++p) {
-        isUsed = pvtSheetSet_Find(task->sheets, &task->occluder->planes[p]) == sheet;
+        isUsed = task->on[p] == sheet;
     }
     const int scale = FINER * task->sheets->cellsPerVoxel;
     const int width = task->soup->frame.size[pvtPlane_GetU(plane)] * scale;
@@ -223,6 +295,24 @@ static void RunGrow(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
+static pvtStatus GrowAll(EdgeTask* task)
+{
+    pvtLoopSet* loops = &task->occluder->loops;
+    const size_t sheetCount = task->sheets->count;
+    for (size_t p = 0; p < loops->loopCount; ++p) {
+        task->counts[p] = loops->starts[p + 1] - loops->starts[p];
+        task->on[p] = pvtSheetSet_Find(task->sheets, &task->occluder->planes[p]);
+    }
+    pvtParallelFor(task->context, RunGrow, sheetCount, 1, task);
+    for (size_t s = 0; s < sheetCount; ++s) {
+        if (task->statuses[s] != PVT_OK) {
+            return task->statuses[s];
+        }
+    }
+    PackPoints(task->counts, loops);
+    return pvtMakeOccluderMesh(task->context, task->occluder);
+}
+
 pvtStatus pvtGrowSheetPanels(pvtContext* context, const pvtSheetSet* sheets, double deviation,
                              const pvtMesh* mesh, pvtOccluder* occluder)
 {
@@ -232,27 +322,22 @@ pvtStatus pvtGrowSheetPanels(pvtContext* context, const pvtSheetSet* sheets, dou
     }
     pvtSheetSoup soup;
     pvtStatus status = pvtCreateSheetSoup(context, mesh, &occluder->frame, &soup);
-    pvtStatus* statuses = pvtAllocate(context, sheets->count, sizeof *statuses);
-    size_t* counts = pvtAllocate(context, count, sizeof *counts);
-    if (status == PVT_OK && (statuses == NULL || counts == NULL)) {
-        status = pvtContext_GetStatus(context);
+    EdgeTask task = {.context = context,
+                     .sheets = sheets,
+                     .soup = &soup,
+                     .deviation = deviation,
+                     .occluder = occluder,
+                     .on = pvtAllocate(context, count, sizeof *task.on),
+                     .counts = pvtAllocate(context, count, sizeof *task.counts),
+                     .statuses = pvtAllocate(context, sheets->count, sizeof *task.statuses)};
+    if (status == PVT_OK) {
+        status = task.on != NULL && task.counts != NULL && task.statuses != NULL
+                     ? GrowAll(&task)
+                     : pvtContext_GetStatus(context);
     }
-    if (status == PVT_OK && statuses != NULL && counts != NULL) {
-        EdgeTask task = {context, sheets, &soup, deviation, occluder, statuses, counts};
-        for (size_t p = 0; p < count; ++p) {
-            counts[p] = occluder->loops.starts[p + 1] - occluder->loops.starts[p];
-        }
-        pvtParallelFor(context, RunGrow, sheets->count, 1, &task);
-    }
-    for (size_t s = 0; s < sheets->count && status == PVT_OK && statuses != NULL; ++s) {
-        status = statuses[s];
-    }
-    if (status == PVT_OK && counts != NULL) {
-        PackPoints(counts, &occluder->loops);
-        status = pvtMakeOccluderMesh(context, occluder);
-    }
-    pvtRelease(context, counts);
-    pvtRelease(context, statuses);
+    pvtRelease(context, task.on);
+    pvtRelease(context, task.counts);
+    pvtRelease(context, task.statuses);
     pvtSheetSoup_Free(context, &soup);
     return status == PVT_CANCELLED ? pvtFailCancelled(context) : status;
 }

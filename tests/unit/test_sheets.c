@@ -215,6 +215,47 @@ static void a_gable_with_a_window_is_covered_up_to_its_slants_and_corners(void**
     DestroyTestContext(context);
 }
 
+// Cracks too narrow for cells close, and some as corners move: a slit that turned inside out would
+// be a wall twice. Without the tests of sweeps a few of these panels have more area than the wall,
+// and one build in a hundred fails.
+static void cracks_in_a_wall_close_without_a_fold(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    pvtRandom random = pvtMakeRandom(2, 1);
+    for (int build = 0; build < 40; ++build) {
+        Soup soup = {.count = 0};
+        double left = -4.0;
+        for (int crack = 0; crack < 1 + build % 3; ++crack) {
+            const double at = -3.5 + 2.4 * crack + 2.0 * pvtRandom_Unit(&random);
+            const double width = 8.0 / 64 * (3e-5 + 7e-5 * pvtRandom_Unit(&random));
+            const double bottom = 3.0 * pvtRandom_Unit(&random), top = bottom + 0.9;
+            AddPane(&soup, left, at, 0, 4);
+            AddPane(&soup, at, at + width, 0, bottom);
+            AddPane(&soup, at, at + width, top, 4);
+            left = at + width;
+        }
+        AddPane(&soup, left, 4, 0, 4);
+        pvtMesh mesh = MakeMesh(context, &soup);
+        const pvtBuildOptions options = GetQuickOptions(16);
+        pvtOccluder occluder;
+        pvtBuildStats stats;
+        CHECK_OK(context, pvtBuildOccluder(context, &options, &mesh, &occluder, &stats));
+        assert_true(stats.outside == 0);
+        for (size_t p = 0, t = 0; p < occluder.loops.loopCount; ++p) {
+            const size_t points = occluder.loops.starts[p + 1] - occluder.loops.starts[p];
+            pvtMesh panel = occluder.mesh;
+            panel.indices += 3 * t;
+            panel.triangleCount = points - 2;
+            assert_true(MeasureArea(&panel) < 32.001);
+            t += points - 2;
+        }
+        pvtOccluder_Free(context, &occluder);
+        pvtMesh_Free(context, &mesh);
+    }
+    DestroyTestContext(context);
+}
+
 static void panels_of_a_bent_sheet_stay_as_close_to_it_as_the_stats_say(void** state)
 {
     (void)state;
@@ -489,6 +530,7 @@ int main(void)
         cmocka_unit_test(a_tent_is_covered_by_its_two_sides),
         cmocka_unit_test(walls_that_meet_leave_next_to_no_gap),
         cmocka_unit_test(a_gable_with_a_window_is_covered_up_to_its_slants_and_corners),
+        cmocka_unit_test(cracks_in_a_wall_close_without_a_fold),
         cmocka_unit_test(panels_of_a_bent_sheet_stay_as_close_to_it_as_the_stats_say),
         cmocka_unit_test(junctions_and_overlaps_leave_no_seam_in_a_sheet),
         cmocka_unit_test(every_cell_of_a_sheet_is_covered),
