@@ -13,11 +13,10 @@ enum { FINEST_GOAL = 512 };
 bool pvtMayAscend(const pvtBuild* build)
 {
     const bool hasRoom = build->stats.tolerance > 0.0 || build->solid.strictCount > 0;
-    // More triangles than can climb are worth it where they hide more without: what does is taken
-    // by the measure, which within a tolerance that was asked for grows with what sticks out.
-    const bool isMeasured = build->stats.tolerance == 0.0 || build->isBand;
-    return !pvtIsPaper(build) && hasRoom &&
-           (isMeasured || build->options->budget <= PVT_MOST_ASCENT);
+    // Of a larger budget so many climb, and by the measure all of it is taken where that hides
+    // more. Within a tolerance that was asked for nothing tells: there all stay in their planes.
+    const bool isKnown = build->stats.tolerance == 0.0 || build->isBand;
+    return !pvtIsPaper(build) && hasRoom && (isKnown || build->options->budget <= PVT_MOST_ASCENT);
 }
 
 int pvtGetAscentBudget(const pvtBuild* build)

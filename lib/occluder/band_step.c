@@ -22,7 +22,7 @@ static const double WHOLE = 0.75;
 static const double RIM_LOSS = 0.05, MOST_LOSS = 0.28;
 // Of what the surface hides: where a selection without refinement hides this part of it, nearly all
 // is hidden in the end; with half of this next to nothing.
-static const double ENOUGH = 0.5;
+static const double ENOUGH_SHARE = 0.5;
 // Of the surface: where sheets take less it is not flat, and a selection need not be tried.
 static const double FLAT_SHARE = 0.5;
 // Of the touched voxels: an inside of fewer is none.
@@ -88,8 +88,9 @@ static pvtStatus RunTrial(pvtContext* context, const pvtBitGrid* surface, pvtBui
     double chosen = 0.0, mesh = 0.0, touched = 0.0, allowed = 0.0;
     *trial = (Trial){0};
     pvtStatus status = Select(context, build);
-    // Where there is no room for a polygon, none hides anything.
+    // Where there is no room for a polygon, none hides anything, and no gap closes.
     if (status == PVT_NOTHING_INSIDE) {
+        *trial = (Trial){.whole = 1.0, .kept = 1.0};
         return PVT_OK;
     }
     const pvtOccluder* cut = build->flat.loops.loopCount > 0 ? &build->flat : &build->occluder;
@@ -167,17 +168,18 @@ static bool IsWhole(const Trial* trial, double voxels)
 // that was asked for only whether there may be one.
 static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* reach)
 {
-    const double whole = REACH_RESOLUTION / build->stats.resolution / build->stats.voxelSize;
+    const double voxelsPerUnit =
+        REACH_RESOLUTION / build->stats.resolution / build->stats.voxelSize;
     Trial trial = {0};
     pvtStatus status = PVT_OK;
     *reach = 0.0;
     const int count = build->options->error > 0.0 ? 1 : REACH_COUNT;
-    for (int i = 0; i < count && trial.share < ENOUGH && status == PVT_OK; ++i) {
+    for (int i = 0; i < count && trial.share < ENOUGH_SHARE && status == PVT_OK; ++i) {
         const double next = GetReach(build, i);
         if (next > *reach) {
             *reach = next;
             status = TryReach(context, build, next, &trial);
-            if (status == PVT_OK && !IsWhole(&trial, next * whole)) {
+            if (status == PVT_OK && !IsWhole(&trial, next * voxelsPerUnit)) {
                 *reach = 0.0;
                 return status;
             }
@@ -186,14 +188,16 @@ static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* r
     return status;
 }
 
-static void TellBand(pvtContext* context, const pvtBuild* build)
+static void TellBand(pvtContext* context, const pvtBuild* build, int resolution)
 {
     const pvtBuildStats* stats = &build->stats;
     pvtWarnOnce(context,
                 "there is next to nothing inside at %d voxels, and the surface is not flat: "
-                "triangles may stray from it by %.3g (%.3g voxels); --tolerance sets how far, "
-                "and a larger --budget needs less",
-                stats->resolution, stats->tolerance, stats->tolerance / stats->voxelSize);
+                "triangles may stray from it by %.3g (%.3g voxels)%s",
+                resolution, stats->tolerance, stats->tolerance / stats->voxelSize,
+                build->options->error > 0.0
+                    ? ", as the error allows"
+                    : "; --tolerance sets how far, and a larger --budget needs less");
 }
 
 static pvtStatus UseBand(pvtContext* context, pvtBuild* build, double reach)
@@ -230,12 +234,17 @@ static pvtStatus Restart(pvtContext* context, pvtBuild* build, double voxels)
     build->ownOptions.tolerance = (pvtLength){voxels, true};
     pvtBuild_Free(context, build);
     build->options = &build->ownOptions;
-    build->isBand = true;
     pvtStatus status = pvtResolveSizes(context, build);
     if (status == PVT_OK) {
         status = pvtVoxelizeStep(context, build);
     }
-    return status == PVT_OK ? pvtFillStep(context, build) : status;
+    if (status == PVT_OK) {
+        status = pvtFillStep(context, build);
+    }
+    // Smaller voxels may have found one.
+    build->isBand = status == PVT_OK && HasNoInside(build);
+    pvtBeginStage(context, "band");
+    return status;
 }
 
 static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
@@ -254,18 +263,25 @@ static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
 
 pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
 {
+    const int resolution = build->stats.resolution;
+    if (!pvtMayUseSheets(build)) {
+        return PVT_OK;
+    }
     pvtStatus status = PVT_OK;
     if (pvtMayUseBand(build)) {
         Trial trial = {0};
         status = build->sheetShare >= FLAT_SHARE ? TrySheets(context, build, &trial) : PVT_OK;
-        if (status == PVT_OK && trial.share < ENOUGH) {
+        if (status == PVT_OK && trial.share < ENOUGH_SHARE) {
             status = TryBand(context, build);
         }
     }
-    if (status == PVT_OK && !build->isBand) {
-        status = pvtSheetStepWithoutBand(context, build);
-    } else if (status == PVT_OK) {
-        TellBand(context, build);
+    if (status != PVT_OK) {
+        return status;
     }
-    return status;
+    // A band is a tolerance, with which there are no sheets.
+    if (pvtMayUseSheets(build)) {
+        return pvtSheetStepWithoutBand(context, build);
+    }
+    TellBand(context, build, resolution);
+    return PVT_OK;
 }

@@ -128,9 +128,7 @@ static pvtStatus Bend(pvtContext* context, pvtBuild* build)
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
 {
     const size_t triangles = build->occluder.mesh.triangleCount;
-    // The measure grows with what sticks out as well, or is seen below the edge of a landscape: it
-    // is of no use there.
-    if (!pvtMayAscend(build) || build->stats.tolerance > 0.0 || build->options->terrain) {
+    if (!pvtMayAscend(build) || !pvtIsMeasured(build)) {
         return PVT_OK;
     }
     pvtStatus status = PVT_OK;

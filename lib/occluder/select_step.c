@@ -74,7 +74,7 @@ static pvtStatus TakeStart(pvtContext* context, pvtBuild* build, int start, pvtO
         status = pvtTakeCut(context, &build->candidates, &ample, occluder);
     }
     if (status == PVT_OK && start == 0) {
-        status = budget == build->options->budget
+        status = budget == build->options->budget || !pvtIsMeasured(build)
                      ? pvtTakeCut(context, &build->candidates, &cut, &build->flat)
                      : TakeFlat(context, build, &build->flat);
     }

@@ -19,7 +19,7 @@ static const double DEVIATIONS[] = {0.03125, 0.25, 1.0};
 enum { DEVIATION_COUNT = sizeof DEVIATIONS / sizeof *DEVIATIONS };
 // Sheets that take this part of the surface need not lie any farther off; nearly all of it, where
 // the next step is a small one.
-static const double ENOUGH[] = {0.9, 0.5, 0.5};
+static const double ENOUGH[] = {0.9, 0.5};
 // Less than this is not flat a little farther off, either: a band is tried first.
 static const double HOPELESS = 0.25;
 
@@ -84,6 +84,7 @@ static double GetMostDeviation(const pvtBuild* build)
 // Sheets may reach into voxels that they do not pass over wholly.
 static void WidenBySheets(pvtBuild* build)
 {
+    build->bounds = build->allowedBounds;
     pvtWidenBounds(&build->hiding, &build->bounds);
     const double h = build->stats.voxelSize;
     pvtBox3* box = &build->bounds;
@@ -106,6 +107,7 @@ static pvtStatus FindClosestSheets(pvtContext* context, pvtBuild* build, bool is
         build->triedDeviations = i + 1;
         // Without any bare surface all of it has an inside behind it.
         if (status != PVT_OK || build->sheets.bare <= 0.0) {
+            build->sheetShare = 1.0;
             return status;
         }
         status = GetShare(context, build, &build->sheetShare);
@@ -139,10 +141,10 @@ pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build)
 
 pvtStatus pvtSheetStepWithoutBand(pvtContext* context, pvtBuild* build)
 {
-    pvtStatus status = PVT_OK;
-    if (pvtMayUseSheets(build)) {
-        status = FindClosestSheets(context, build, true);
-        status = status == PVT_OK ? MarkSheets(context, build) : status;
+    const int tried = build->triedDeviations;
+    pvtStatus status = FindClosestSheets(context, build, true);
+    if (status == PVT_OK && build->triedDeviations > tried) {
+        status = MarkSheets(context, build);
     }
     return status == PVT_OK && build->bounds.lower.x > build->bounds.upper.x
                ? pvtFailNothingInside(context, build)

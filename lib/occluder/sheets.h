@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Planes that the surface itself lies on, nearly. What a polygon within such a part of a plane
-// hides, the surface hides too: there needs to be no inside behind it. So walls of one polygon,
-// tents and landscapes have occluders as well.
+// hides, the surface hides too: there needs to be no inside behind it. So walls of one polygon and
+// tents have occluders as well.
 #ifndef PVT_OCCLUDER_SHEETS_H
 #define PVT_OCCLUDER_SHEETS_H
 
@@ -55,7 +55,8 @@ pvtStatus pvtAddSheetCandidates(pvtContext* context, const pvtCandidateOptions* 
                                 pvtCandidateSet* candidates);
 
 /// Moves the corners of polygons on sheets outwards, to where the surface within `deviation` [vx]
-/// ends. Meshes of very many triangles stay as they are: their sheets are pieces of what is curved.
+/// ends, and takes away those of notches that it fills: triangles become fewer. Polygons on meshes
+/// of very many triangles stay as they are: their sheets are pieces of what is curved.
 pvtStatus pvtGrowSheetPanels(pvtContext* context, const pvtSheetSet* sheets, double deviation,
                              const pvtMesh* mesh, pvtOccluder* occluder);
 

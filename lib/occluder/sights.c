@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "base/vector.h"
 #include "occlusion/stride.h"
+#include "voxel/bit_grid.h"
 
 #include <string.h>
 
@@ -21,10 +22,12 @@ enum {
     MARGIN = 4, // [px]
     STREAM = 0x51675,
     EXPOSURES = 64, // sets of sides of a node
-    MANY_POINTS = 150000,
     LEAST_SIGHTS = 64,
 };
 
+// Points at the border of an object as many nodes long: a cube has 6, and what is full of holes
+// more.
+static const double MANY_POINTS = 8.5;
 static const float WIDENING = 1.2F; // of nodes, which are seen as squares: cubes cover more
 
 typedef struct Splatter {
@@ -321,11 +324,14 @@ static void MakeSightRange(size_t begin, size_t end, int worker, void* taskData)
     (void)worker;
     const Splatter* splatter = taskData;
     const pvtViewSet* views = splatter->views;
-    const size_t stride = pvtGetViewStride(splatter->set->count);
+    // A list may have more views than there are sights.
+    const size_t count = splatter->set->count;
+    const size_t places = count > views->count ? count : views->count;
+    const size_t stride = pvtGetViewStride(places);
     for (size_t s = begin; s < end && !pvtIsCancelled(splatter->context); ++s) {
         pvtSight* sight = &splatter->set->sights[s];
         pvtRandom random = pvtMakeRandom(splatter->options->seed, STREAM + s);
-        const pvtView* view = &views->views[s * stride % splatter->set->count % views->count];
+        const pvtView* view = &views->views[s * stride % places % views->count];
         sight->weight = (float)(view->weight * (double)views->count);
         AimSight(splatter, view, &random, sight);
         SplatGoal(splatter, view->direction, sight);
@@ -355,10 +361,13 @@ static pvtStatus PackQuads(pvtContext* context, const Splatter* splatter)
 
 // What is full of holes has several times the border of any other solid, and no triangles that many
 // steps would help: its sights are fewer, so that time stays bounded.
-static void CountSights(const pvtSightOptions* options, size_t points, pvtSightSet* set)
+static void CountSights(const pvtSightOptions* options, const pvtField* field, size_t points,
+                        pvtSightSet* set)
 {
     const size_t asked = (size_t)options->count;
-    set->count = points > MANY_POINTS ? asked * MANY_POINTS / points : asked;
+    const double side = pvtGetLongestSide(field->size);
+    const double many = MANY_POINTS * side * side;
+    set->count = (double)points > many ? (size_t)((double)asked * many / (double)points) : asked;
     set->count = set->count < LEAST_SIGHTS ? LEAST_SIGHTS : set->count;
     set->count = set->count > asked ? asked : set->count;
     set->share = (double)set->count / (double)asked;
@@ -386,7 +395,7 @@ pvtStatus pvtCreateSights(pvtContext* context, const pvtSightOptions* options,
     Splatter splatter = {.context = context, .options = options, .views = &views, .set = set};
     pvtStatus status = ListBorder(context, field, &splatter);
     if (status == PVT_OK) {
-        CountSights(options, splatter.pointCount, set);
+        CountSights(options, field, splatter.pointCount, set);
         spread.count = (int)set->count;
         status = pvtMakeViews(context, &spread, &views);
     }

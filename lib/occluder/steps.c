@@ -258,6 +258,7 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
     }
     if (status == PVT_OK) {
         pvtWidenBounds(&build->cells.voxels, &build->bounds);
+        build->allowedBounds = build->bounds;
         status = pvtCreateSliceVolume(context, &build->allowed, &build->volume);
     }
     if (status == PVT_OK && build->cells.count > 0) {

@@ -23,7 +23,8 @@ typedef struct pvtBuild {
     pvtInsideTest inside;       ///< of all three; only where the occluder ascends
     pvtSliceVolume volume;      ///< of `allowed`
     pvtSliceVolume solidVolume; ///< of the solid: what the paper's way slices
-    pvtBox3 bounds;             ///< [wu] of the allowed voxels
+    pvtBox3 bounds;             ///< [wu] of the allowed voxels, and around sheets
+    pvtBox3 allowedBounds;      ///< [wu] of the allowed voxels and cells
     pvtSlicer slicer;
     bool hasSlicer;
     pvtSectionSet sections;
@@ -80,6 +81,12 @@ static inline pvtViewOptions pvtGetViewOptions(const pvtBuild* build)
 }
 /// Whether triangles may leave the planes of their polygons.
 bool pvtMayAscend(const pvtBuild* build);
+/// Whether the measure tells which of two occluders is better: it grows with what sticks out as
+/// well, or is seen below the edge of a landscape.
+static inline bool pvtIsMeasured(const pvtBuild* build)
+{
+    return build->stats.tolerance == 0.0 && !build->options->terrain;
+}
 /// How many triangles may at most, of the budget.
 int pvtGetAscentBudget(const pvtBuild* build);
 /// Where triangles may lie.

@@ -83,6 +83,24 @@ static pvtStatus RunSheetBuild(pvtContext* context, const pvtMesh* mesh, bool* e
     return RunBuildWithin(context, mesh, PVT_METHOD_PLANAR, 0.0, empty);
 }
 
+// Begins again, with voxels small enough for a band within the error.
+static pvtStatus RunBandBuild(pvtContext* context, const pvtMesh* mesh, bool* empty)
+{
+    pvtBuildOptions options = pvtDefaultBuildOptions();
+    options.budget = 6;
+    options.error = 0.5;
+    options.views.count = 6;
+    options.effort = PVT_EFFORT_FAST;
+    pvtOccluder occluder;
+    pvtBuildStats stats;
+    memset(&occluder, 0xA5, sizeof occluder);
+    const pvtStatus status = pvtBuildOccluder(context, &options, mesh, &occluder, &stats);
+    assert_true(status != PVT_OK || stats.tolerance > 0.0);
+    *empty = IsZero(&occluder, sizeof occluder);
+    pvtOccluder_Free(context, &occluder);
+    return status;
+}
+
 static pvtStatus RunPaperBuild(pvtContext* context, const pvtMesh* mesh, bool* empty)
 {
     return RunBuild(context, mesh, PVT_METHOD_PAPER, empty);
@@ -331,6 +349,12 @@ static void a_build_of_sheets_survives_refused_requests(void** state)
     CheckRequestsOn("hangar", RunSheetBuild, 1, 60);
 }
 
+static void a_build_within_a_band_survives_refused_requests(void** state)
+{
+    (void)state;
+    CheckRequestsOn("sheet", RunBandBuild, 1, 24);
+}
+
 static void a_paper_build_survives_refused_requests(void** state)
 {
     (void)state;
@@ -364,6 +388,7 @@ int main(void)
         cmocka_unit_test(an_evaluation_survives_every_refused_request),
         cmocka_unit_test(a_planar_build_survives_refused_requests),
         cmocka_unit_test(a_build_of_sheets_survives_refused_requests),
+        cmocka_unit_test(a_build_within_a_band_survives_refused_requests),
         cmocka_unit_test(a_paper_build_survives_refused_requests),
         cmocka_unit_test(a_build_on_four_threads_survives_refused_requests),
     };

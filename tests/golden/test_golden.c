@@ -390,6 +390,19 @@ static void RunModel(Trail* trail, const char* name, bool hollow, int threads)
     DestroyTestContext(run.context);
 }
 
+// Of what has no inside, the build alone: on flat panels, or within a band.
+static void RunSurface(Trail* trail, const char* name, int threads)
+{
+    Run run = {.context = CreateTestContext(threads), .trail = trail};
+    trail->model = name;
+    CHECK_OK(run.context, MakeRecipeMesh(run.context, name, &run.mesh));
+    pvtMesh occluder = {0};
+    RunBuild(&run, "build-planar", PVT_METHOD_PLANAR, &occluder);
+    pvtMesh_Free(run.context, &occluder);
+    FreeRun(&run);
+    DestroyTestContext(run.context);
+}
+
 typedef struct Golden {
     const char* path;
     bool update;
@@ -401,6 +414,8 @@ static void RunModels(Trail* trail, int threads)
     trail->count = 0;
     RunModel(trail, "boulder", false, threads);
     RunModel(trail, "house", true, threads);
+    RunSurface(trail, "hangar", threads);
+    RunSurface(trail, "sheet", threads);
 }
 
 static void stages_give_the_committed_bytes(void** state)

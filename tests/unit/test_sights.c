@@ -185,23 +185,25 @@ static void sights_see_a_disc_and_draw_their_rectangles_within_it(void** state)
     DestroyTestContext(context);
 }
 
-// Plates a node thick and a node apart: all of their nodes are border, 190,000. A block has 30,000.
+// Plates a voxel thick and a voxel apart, of 72 voxels: all of it is border. A block has much less,
+// however many of its nodes there are.
 static void what_is_full_of_gaps_gets_fewer_sights(void** state)
 {
     (void)state;
-    enum { SIZE = 76 };
+    static const int sizes[] = {250, 76};
     pvtContext* context = CreateTestContext(2);
     size_t counts[2];
     for (int i = 0; i < 2; ++i) {
         pvtBitGrid grid;
         pvtField field;
         pvtSightSet sights;
-        MakeEmptyGrid(context, SIZE, SIZE, SIZE, &grid);
-        for (int z = 2; z < SIZE - 2; z += i == 0 ? SIZE : 2) {
+        const int size = sizes[i];
+        MakeEmptyGrid(context, size, size, size, &grid);
+        for (int z = 2; z < size - 2; z += i == 0 ? size : 2) {
             SetBox(&grid, (int[3]){2, 2, z},
-                   (int[3]){SIZE - 2, SIZE - 2, i == 0 ? SIZE - 2 : z + 1});
+                   (int[3]){size - 2, size - 2, i == 0 ? size - 2 : z + 1});
         }
-        CHECK_OK(context, pvtCreateField(context, &grid, NULL, 128, &field));
+        CHECK_OK(context, pvtCreateField(context, &grid, NULL, 250, &field));
         const pvtViewOptions views = pvtDefaultViewOptions();
         const pvtSightOptions options = {.views = &views, .count = 256, .quads = 40, .seed = 1};
         CHECK_OK(context, pvtCreateSights(context, &options, &field, &sights));
