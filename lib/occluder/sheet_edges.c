@@ -147,7 +147,7 @@ static bool FillNotch(const Room* room, pvtPoint2* points, size_t count, size_t 
     }
     RemovePoint(points, count, i);
     // The edge that closes it is one of those at the corner before.
-    if (pvtIsPointFree(points, count - 1, (i + count - 2) % (count - 1))) {
+    if (pvtIsPointFree(points, count - 1, i > 0 ? i - 1 : count - 2)) {
         return true;
     }
     memmove(points + i + 1, points + i, (count - i - 1) * sizeof *points);
