@@ -120,11 +120,55 @@ static void crossed_folded_and_clockwise_polygons_are_not_simple(void** state)
     assert_false(pvtIsPolygonSimple(flat, 3));
 }
 
+// A square of 20 with a hole of 4 that a bridge leads to from its corner.
+static void edges_of_a_bridge_may_lie_on_each_other_and_others_may_not_cross(void** state)
+{
+    (void)state;
+    enum { COUNT = 10, HOLE = 5 };
+    const pvtPoint2 square[COUNT] = {{0, 0}, {20, 0}, {20, 20}, {0, 20}, {0, 0},
+                                     {8, 8}, {8, 12}, {12, 12}, {12, 8}, {8, 8}};
+    for (size_t i = 0; i < COUNT; ++i) {
+        assert_true(pvtIsPointFree(square, COUNT, i));
+    }
+    static const struct {
+        size_t index;
+        pvtPoint2 there;
+        bool isFree;
+    } moves[] = {
+        {2, {25, 25}, true},  // outwards
+        {7, {10, 11}, true},  // the hole becomes smaller,
+        {7, {8, 8}, true},    // closes,
+        {7, {5, 5}, false},   // or reaches over its bridge
+        {1, {10, 10}, false}, // an edge through the hole
+        {2, {-5, 5}, false},  // and one through the other side
+        {1, {0, 0}, false},   // an edge without length
+    };
+    for (size_t m = 0; m < sizeof moves / sizeof *moves; ++m) {
+        pvtPoint2 moved[COUNT];
+        memcpy(moved, square, sizeof moved);
+        moved[moves[m].index] = moves[m].there;
+        assert_int_equal(pvtIsPointFree(moved, COUNT, moves[m].index), moves[m].isFree);
+    }
+    const pvtPoint2 inHole[3] = {{9, 9}, {11, 9}, {10, 11}};
+    const pvtPoint2 within[3] = {{14, 2}, {18, 2}, {16, 6}};
+    const pvtPoint2 outside[3] = {{24, 2}, {28, 2}, {26, 6}};
+    assert_int_equal(pvtGetWinding(square, COUNT, inHole), 0);
+    assert_int_equal(pvtGetWinding(square, COUNT, within), 1);
+    assert_int_equal(pvtGetWinding(square, COUNT, outside), 0);
+    // Turned inside out, the hole is there twice.
+    pvtPoint2 twice[COUNT];
+    memcpy(twice, square, sizeof twice);
+    twice[HOLE + 1] = square[HOLE + 3];
+    twice[HOLE + 3] = square[HOLE + 1];
+    assert_int_equal(pvtGetWinding(twice, COUNT, inHole), 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_polygon_said_to_be_within_meets_no_clear_cell),
         cmocka_unit_test(a_rectangle_of_whole_cells_is_within_them_exactly),
+        cmocka_unit_test(edges_of_a_bridge_may_lie_on_each_other_and_others_may_not_cross),
         cmocka_unit_test(crossed_folded_and_clockwise_polygons_are_not_simple),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
