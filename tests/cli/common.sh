@@ -13,6 +13,7 @@ failures=0
 checks=0
 code=0
 export MESA_SHADER_CACHE_DISABLE=true
+unset PARAVENT_MODULE_PATH # the programs beside the one that is tested are looked for by itself
 
 fail() {
     failures=$((failures + 1))
