@@ -2,59 +2,26 @@
 #include "fit.h"
 
 #include "base/bits.h"
+#include "section/predicates.h"
 
 #include <assert.h>
-
-static int64_t Cross(pvtPoint2 o, pvtPoint2 a, pvtPoint2 b)
-{
-    return (int64_t)(a.x - o.x) * (b.y - o.y) - (int64_t)(a.y - o.y) * (b.x - o.x);
-}
-
-static bool IsBetween(int32_t value, int32_t a, int32_t b)
-{
-    return a < b ? a <= value && value <= b : b <= value && value <= a;
-}
-
-static int Sign(int64_t value)
-{
-    return (value > 0) - (value < 0);
-}
-
-static bool IsOnSegment(pvtPoint2 p, pvtPoint2 a, pvtPoint2 b)
-{
-    return Cross(a, b, p) == 0 && IsBetween(p.x, a.x, b.x) && IsBetween(p.y, a.y, b.y);
-}
-
-// Closed segments a–b and c–d have a point in common.
-static bool DoSegmentsMeet(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
-{
-    const int abc = Sign(Cross(a, b, c));
-    const int abd = Sign(Cross(a, b, d));
-    const int cda = Sign(Cross(c, d, a));
-    const int cdb = Sign(Cross(c, d, b));
-    if (abc * abd < 0 && cda * cdb < 0) {
-        return true;
-    }
-    return (abc == 0 && IsOnSegment(c, a, b)) || (abd == 0 && IsOnSegment(d, a, b)) ||
-           (cda == 0 && IsOnSegment(a, c, d)) || (cdb == 0 && IsOnSegment(b, c, d));
-}
 
 // Edge i against all edges that are not its neighbours, and its neighbours for folding back.
 static bool IsEdgeFree(const pvtPoint2* points, size_t count, size_t i)
 {
     const pvtPoint2 a = points[i];
     const pvtPoint2 b = points[(i + 1) % count];
-    if (a.x == b.x && a.y == b.y) {
+    if (pvtIsSamePoint(a, b)) {
         return false;
     }
     const pvtPoint2 before = points[(i + count - 1) % count];
     const pvtPoint2 after = points[(i + 2) % count];
-    if (count > 3 && (IsOnSegment(before, a, b) || IsOnSegment(after, a, b) ||
-                      IsOnSegment(b, before, a) || IsOnSegment(a, b, after))) {
+    if (count > 3 && (pvtIsOnSegment(before, a, b) || pvtIsOnSegment(after, a, b) ||
+                      pvtIsOnSegment(b, before, a) || pvtIsOnSegment(a, b, after))) {
         return false;
     }
     for (size_t j = (i + 2) % count; j != (i + count - 1) % count; j = (j + 1) % count) {
-        if (DoSegmentsMeet(a, b, points[j], points[(j + 1) % count])) {
+        if (pvtSegmentsMeet(a, b, points[j], points[(j + 1) % count])) {
             return false;
         }
     }
@@ -67,26 +34,12 @@ bool pvtIsPointSimple(const pvtPoint2* points, size_t count, size_t index)
            IsEdgeFree(points, count, (index + count - 1) % count);
 }
 
-static bool IsSamePoint(pvtPoint2 a, pvtPoint2 b)
-{
-    return a.x == b.x && a.y == b.y;
-}
-
 // Whether they have more in common than an end of both, or a bridge, which is there in both
 // directions.
 static bool DoEdgesCross(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
 {
-    const bool isAtA = IsSamePoint(a, c) || IsSamePoint(a, d);
-    const bool isAtB = IsSamePoint(b, c) || IsSamePoint(b, d);
-    if (isAtA && isAtB) {
-        return IsSamePoint(a, c);
-    }
-    if (!isAtA && !isAtB) {
-        return DoSegmentsMeet(a, b, c, d);
-    }
-    const pvtPoint2 end = isAtA ? b : a;
-    const pvtPoint2 shared = isAtA ? a : b;
-    return IsOnSegment(end, c, d) || IsOnSegment(IsSamePoint(shared, c) ? d : c, a, b);
+    const bool isBridge = pvtIsSamePoint(a, d) && pvtIsSamePoint(b, c);
+    return !isBridge && pvtSegmentsCross(a, b, c, d);
 }
 
 bool pvtIsPointFree(const pvtPoint2* points, size_t count, size_t index)
@@ -95,7 +48,7 @@ bool pvtIsPointFree(const pvtPoint2* points, size_t count, size_t index)
     for (size_t side = 0; side < 2; ++side) {
         const size_t i = side == 0 ? before : index;
         const pvtPoint2 a = points[i], b = points[(i + 1) % count];
-        if (IsSamePoint(a, b)) {
+        if (pvtIsSamePoint(a, b)) {
             return false;
         }
         for (size_t j = 0; j < count; ++j) {

@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "fit.h"
 #include "occluder.h"
+#include "section/predicates.h"
 
 #include <math.h>
 #include <string.h>
@@ -115,16 +116,11 @@ static void MoveCorners(const Room* room, const int32_t steps[2], pvtPoint2* poi
     }
 }
 
-static bool AreEqual(pvtPoint2 a, pvtPoint2 b)
-{
-    return a.x == b.x && a.y == b.y;
-}
-
 // Whether another corner is in the same place, as at the ends of a bridge.
 static bool IsDouble(const pvtPoint2* points, size_t count, size_t index)
 {
     for (size_t i = 0; i < count; ++i) {
-        if (i != index && AreEqual(points[i], points[index])) {
+        if (i != index && pvtIsSamePoint(points[i], points[index])) {
             return true;
         }
     }
@@ -161,7 +157,7 @@ static size_t FillNotches(const Room* room, pvtPoint2* points, size_t count)
 {
     for (size_t i = 0; i < count && count > 3;) {
         const bool isSpike =
-            count > 4 && AreEqual(points[(i + count - 1) % count], points[(i + 1) % count]);
+            count > 4 && pvtIsSamePoint(points[(i + count - 1) % count], points[(i + 1) % count]);
         if (isSpike) {
             const size_t after = (i + 1) % count;
             RemovePoint(points, count, after > i ? after : i);

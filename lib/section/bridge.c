@@ -139,16 +139,7 @@ static bool IsInSight(void* user, uint32_t number)
 {
     const Sight* sight = user;
     const pvtSegment segment = sight->grid->segments[number];
-    for (int i = 0; i < 4; ++i) {
-        const pvtPoint2 shared = i < 2 ? segment.from : segment.to;
-        const pvtPoint2 other = i < 2 ? segment.to : segment.from;
-        const pvtPoint2 end = i % 2 == 0 ? sight->from : sight->to;
-        const pvtPoint2 far = i % 2 == 0 ? sight->to : sight->from;
-        if (pvtIsSamePoint(shared, end)) {
-            return pvtOrient(end, far, other) == 0 && pvtDotEdges(end, far, end, other) > 0;
-        }
-    }
-    return pvtSegmentsMeet(sight->from, sight->to, segment.from, segment.to);
+    return pvtSegmentsCross(sight->from, sight->to, segment.from, segment.to);
 }
 
 // Of the passes at the node's point, the one within whose angle the target lies; NONE when that is

@@ -85,6 +85,19 @@ static inline bool pvtSegmentsMeet(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoi
            pvtIsOnSegment(b, c, d);
 }
 
+/// True when two segments meet elsewhere than in a common end, or run along each other from there.
+static inline bool pvtSegmentsCross(pvtPoint2 a, pvtPoint2 b, pvtPoint2 c, pvtPoint2 d)
+{
+    for (int i = 0; i < 4; ++i) {
+        const pvtPoint2 shared = i < 2 ? c : d, other = i < 2 ? d : c;
+        const pvtPoint2 end = i % 2 == 0 ? a : b, far = i % 2 == 0 ? b : a;
+        if (pvtIsSamePoint(shared, end)) {
+            return pvtOrient(end, far, other) == 0 && pvtDotEdges(end, far, end, other) > 0;
+        }
+    }
+    return pvtSegmentsMeet(a, b, c, d);
+}
+
 /// A place where a boundary passes: it comes from `before` and goes on to `after`. What it bounds
 /// lies on its left, in the angle from `after` counter-clockwise to `before`.
 typedef struct pvtPass {
