@@ -28,11 +28,13 @@ static const double FLAT_SHARE = 0.5;
 // Of the touched voxels: an inside of fewer is none.
 static const double LEAST_INSIDE = 0.01;
 
-// What is known of triangles within some voxels before any are made with care.
+// What is known of triangles within some voxels before any are made with care. [wu³] measures.
 typedef struct Trial {
-    double share; // that a quick selection hides of what the mesh does
-    double whole; // that the mesh hides of what the touched voxels do
-    double kept;  // that the touched voxels hide of what all that is allowed does
+    bool hasRoom;    // for a polygon: else nothing is measured
+    double selected; // of a quick selection
+    double mesh;
+    double touched; // of the touched voxels
+    double allowed; // of all voxels that triangles may lie in
 } Trial;
 
 static double GetReach(const pvtBuild* build, int number)
@@ -44,8 +46,9 @@ static double GetReach(const pvtBuild* build, int number)
 // What looks like a landscape may have an inside in a few folds.
 static bool HasNoInside(const pvtBuild* build)
 {
-    const double touched = (double)pvtBitGrid_Count(&build->solid.surface);
-    return build->solid.remedy.terrain || (double)build->solid.strictCount < LEAST_INSIDE * touched;
+    const pvtSolid* solid = &build->solid;
+    return solid->remedy.terrain ||
+           (double)solid->strictCount < LEAST_INSIDE * (double)solid->surfaceCount;
 }
 
 bool pvtMayUseBand(const pvtBuild* build)
@@ -77,40 +80,36 @@ static pvtStatus Select(pvtContext* context, pvtBuild* build)
     return status == PVT_OK ? pvtSelectStep(context, build) : status;
 }
 
-static double Divide(double part, double whole)
+static pvtStatus MeasureSelection(pvtContext* context, pvtBuild* build, Trial* trial)
 {
-    return whole > 0.0 ? part / whole : 0.0;
-}
-
-static pvtStatus RunTrial(pvtContext* context, const pvtBitGrid* surface, pvtBuild* build,
-                          Trial* trial)
-{
-    double chosen = 0.0, mesh = 0.0, touched = 0.0, allowed = 0.0;
     *trial = (Trial){0};
     pvtStatus status = Select(context, build);
-    // Where there is no room for a polygon, none hides anything, and no gap closes.
     if (status == PVT_NOTHING_INSIDE) {
-        *trial = (Trial){.whole = 1.0, .kept = 1.0};
         return PVT_OK;
     }
     const pvtOccluder* cut = build->flat.loops.loopCount > 0 ? &build->flat : &build->occluder;
+    trial->hasRoom = true;
+    if (status == PVT_OK) {
+        status = pvtMeasureTriangles(context, build, &cut->mesh, &trial->selected);
+    }
+    return status == PVT_OK ? pvtMeasureTriangles(context, build, build->mesh, &trial->mesh)
+                            : status;
+}
+
+// What was selected in the build tells its views.
+static pvtStatus MeasureVoxels(pvtContext* context, const pvtBitGrid* surface,
+                               const pvtBuild* build, Trial* trial)
+{
     const pvtMeasureGridOptions options = {&build->views, &build->bounds, PVT_MEASURE_SIZE};
-    if (status == PVT_OK) {
-        status = pvtMeasureOcclusion(context, options.views, options.bounds, options.size,
-                                     &cut->mesh, &chosen);
-    }
-    if (status == PVT_OK) {
-        status = pvtMeasureOcclusion(context, options.views, options.bounds, options.size,
-                                     build->mesh, &mesh);
-    }
-    if (status == PVT_OK) {
-        status = pvtMeasureGrid(context, &options, surface, NULL, &touched);
-    }
-    if (status == PVT_OK) {
-        status = pvtMeasureGrid(context, &options, &build->allowed, NULL, &allowed);
-    }
-    *trial = (Trial){Divide(chosen, mesh), Divide(mesh, touched), Divide(touched, allowed)};
-    return status;
+    const pvtStatus status = pvtMeasureGrid(context, &options, surface, NULL, &trial->touched);
+    return status == PVT_OK
+               ? pvtMeasureGrid(context, &options, &build->allowed, NULL, &trial->allowed)
+               : status;
+}
+
+static bool IsEnough(const Trial* trial)
+{
+    return trial->mesh > 0.0 && trial->selected >= ENOUGH_SHARE * trial->mesh;
 }
 
 static pvtBuildOptions GetTrialOptions(const pvtBuild* build)
@@ -134,7 +133,7 @@ static pvtStatus TrySheets(pvtContext* context, const pvtBuild* build, Trial* tr
                         .volume = build->volume,
                         .bounds = build->bounds,
                         .sheets = build->sheets};
-    const pvtStatus status = RunTrial(context, &build->solid.surface, &scratch, trial);
+    const pvtStatus status = MeasureSelection(context, &scratch, trial);
     // These stay the build's.
     scratch.allowed = (pvtBitGrid){0};
     scratch.cells = (pvtCellGrid){0};
@@ -152,7 +151,10 @@ static pvtStatus TryReach(pvtContext* context, const pvtBuild* build, double rea
     options.budget = pvtGetAscentBudget(build);
     pvtStatus status = AllowBand(context, &build->solid, reach, &scratch);
     if (status == PVT_OK) {
-        status = RunTrial(context, &build->solid.surface, &scratch, trial);
+        status = MeasureSelection(context, &scratch, trial);
+    }
+    if (status == PVT_OK && trial->hasRoom) {
+        status = MeasureVoxels(context, &build->solid.surface, &scratch, trial);
     }
     pvtBuild_Free(context, &scratch);
     return status;
@@ -161,7 +163,9 @@ static pvtStatus TryReach(pvtContext* context, const pvtBuild* build, double rea
 // Whether nothing but the rim grows when the surface does.
 static bool IsWhole(const Trial* trial, double voxels)
 {
-    return trial->whole >= WHOLE && trial->kept >= 1.0 - fmin(RIM_LOSS * voxels, MOST_LOSS);
+    const double kept = 1.0 - fmin(RIM_LOSS * voxels, MOST_LOSS);
+    return !trial->hasRoom || (trial->touched > 0.0 && trial->mesh >= WHOLE * trial->touched &&
+                               trial->touched >= kept * trial->allowed);
 }
 
 // The narrowest band that is wide enough, or the widest; 0 where it would close gaps. With an error
@@ -174,7 +178,7 @@ static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* r
     pvtStatus status = PVT_OK;
     *reach = 0.0;
     const int count = build->options->error > 0.0 ? 1 : REACH_COUNT;
-    for (int i = 0; i < count && trial.share < ENOUGH_SHARE && status == PVT_OK; ++i) {
+    for (int i = 0; i < count && !IsEnough(&trial) && status == PVT_OK; ++i) {
         const double next = GetReach(build, i);
         if (next > *reach) {
             *reach = next;
@@ -202,14 +206,13 @@ static void TellBand(pvtContext* context, const pvtBuild* build, int resolution)
 
 static pvtStatus UseBand(pvtContext* context, pvtBuild* build, double reach)
 {
-    pvtBuildStats* stats = &build->stats;
     pvtSheetSet_Free(context, &build->sheets);
     pvtBitGrid_Free(context, &build->hiding);
     pvtCellGrid_Free(context, &build->cells);
     pvtTouching_Free(context, &build->touching);
     build->isBand = true;
     const pvtStatus status = AllowBand(context, &build->solid, reach, build);
-    stats->errorBound = fmax(stats->errorBound, sqrt(3.0) * stats->voxelSize + reach);
+    pvtSetErrorBound(&build->stats);
     return status;
 }
 
@@ -271,7 +274,7 @@ pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
     if (pvtMayUseBand(build)) {
         Trial trial = {0};
         status = build->sheetShare >= FLAT_SHARE ? TrySheets(context, build, &trial) : PVT_OK;
-        if (status == PVT_OK && trial.share < ENOUGH_SHARE) {
+        if (status == PVT_OK && !IsEnough(&trial)) {
             status = TryBand(context, build);
         }
     }

@@ -53,13 +53,6 @@ static pvtStatus MakeMoreViews(pvtContext* context, const pvtBuild* build, pvtVi
     return status;
 }
 
-static pvtStatus MeasureMesh(pvtContext* context, const pvtBuild* build, const pvtMesh* mesh,
-                             double* measure)
-{
-    return pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE, mesh,
-                               measure);
-}
-
 // Polygons are inside as they were made. Far from the origin, what floats make of their corners may
 // not be.
 static bool IsFlatInside(const pvtBuild* build)
@@ -86,9 +79,9 @@ static pvtStatus TakeFlatIfBetter(pvtContext* context, pvtBuild* build)
 {
     double flat = 0.0;
     double bent = 0.0;
-    pvtStatus status = MeasureMesh(context, build, &build->flat.mesh, &flat);
+    pvtStatus status = pvtMeasureTriangles(context, build, &build->flat.mesh, &flat);
     if (status == PVT_OK) {
-        status = MeasureMesh(context, build, &build->occluder.mesh, &bent);
+        status = pvtMeasureTriangles(context, build, &build->occluder.mesh, &bent);
     }
     if (status == PVT_OK && bent < flat && IsFlatInside(build)) {
         const pvtOccluder worse = build->occluder;

@@ -148,8 +148,7 @@ pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
         WarnOfStorage(context, build);
     }
     if (status == PVT_OK) {
-        status = pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE,
-                                     &build->occluder.mesh, &stats->measure);
+        status = pvtMeasureTriangles(context, build, &build->occluder.mesh, &stats->measure);
         build->occluder.measure = stats->measure;
     }
     if (status == PVT_OK) {

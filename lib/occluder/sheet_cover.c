@@ -429,17 +429,17 @@ pvtStatus pvtCoverPlane(pvtContext* context, const pvtSheetSoup* soup, const pvt
 }
 
 typedef struct pvtShapeBox {
-    double low[2], high[2];
+    Span x, y;
 } Box;
 
 static Box GetBox(const Point* points, int count)
 {
-    Span x = {HUGE_VAL, -HUGE_VAL}, y = x;
+    Box box = {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
     for (int i = 0; i < count; ++i) {
-        Widen(&x, points[i].x);
-        Widen(&y, points[i].y);
+        Widen(&box.x, points[i].x);
+        Widen(&box.y, points[i].y);
     }
-    return (Box){{x.low, y.low}, {x.high, y.high}};
+    return box;
 }
 
 pvtStatus pvtCollectPlaneShapes(pvtContext* context, const pvtSheetSoup* soup,
@@ -472,8 +472,8 @@ void pvtPlaneShapes_Free(pvtContext* context, pvtPlaneShapes* shapes)
 
 static bool AreApart(const Box* a, const Box* b)
 {
-    return a->low[0] >= b->high[0] || a->high[0] <= b->low[0] || a->low[1] >= b->high[1] ||
-           a->high[1] <= b->low[1];
+    return a->x.low >= b->x.high || a->x.high <= b->x.low || a->y.low >= b->y.high ||
+           a->y.high <= b->y.low;
 }
 
 // Points near the corners and in the middle, each in some shape: what is not covered fails here.
@@ -491,8 +491,8 @@ static bool MayCover(const pvtPlaneShapes* shapes, const Shape* triangle)
         bool isInside = false;
         for (size_t s = 0; s < shapes->count && !isInside; ++s) {
             const Box* box = &shapes->boxes[s];
-            isInside = x >= box->low[0] - NEAR && x <= box->high[0] + NEAR &&
-                       y >= box->low[1] - NEAR && y <= box->high[1] + NEAR &&
+            isInside = x >= box->x.low - NEAR && x <= box->x.high + NEAR &&
+                       y >= box->y.low - NEAR && y <= box->y.high + NEAR &&
                        IsInside(&shapes->shapes[s], x, y);
         }
         if (!isInside) {

@@ -105,6 +105,12 @@ static double GetVoxelSizeForError(const pvtBuildOptions* options)
     return fmin(byTolerance, byHole);
 }
 
+void pvtSetErrorBound(pvtBuildStats* stats)
+{
+    stats->errorBound =
+        SQRT3 * stats->voxelSize + fmax(stats->tolerance, 0.5 * stats->smallestHole);
+}
+
 pvtStatus pvtResolveSizes(pvtContext* context, pvtBuild* build)
 {
     const pvtBuildOptions* options = build->options;
@@ -145,8 +151,7 @@ pvtStatus pvtResolveSizes(pvtContext* context, pvtBuild* build)
     }
     stats->tolerance = ToWorld(options->tolerance, stats->voxelSize);
     stats->smallestHole = ToWorld(options->smallestHole, stats->voxelSize);
-    stats->errorBound =
-        SQRT3 * stats->voxelSize + fmax(stats->tolerance, 0.5 * stats->smallestHole);
+    pvtSetErrorBound(stats);
     return PVT_OK;
 }
 
@@ -156,6 +161,13 @@ pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build)
     options.voxelSize = build->stats.voxelSize;
     options.padding = build->stats.tolerance;
     return pvtVoxelizeMesh(context, &options, build->mesh, &build->surface);
+}
+
+pvtStatus pvtMeasureTriangles(pvtContext* context, const pvtBuild* build, const pvtMesh* mesh,
+                              double* measure)
+{
+    return pvtMeasureOcclusion(context, &build->views, &build->bounds, PVT_MEASURE_SIZE, mesh,
+                               measure);
 }
 
 bool pvtFindVoxelBounds(const pvtBitGrid* grid, pvtBox3* bounds)

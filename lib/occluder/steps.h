@@ -58,6 +58,9 @@ pvtStatus pvtAscendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
 
+/// From the voxels' size, the tolerance and the holes that close.
+void pvtSetErrorBound(pvtBuildStats* stats);
+
 enum { PVT_MEASURE_SIZE = 64 }; ///< [px] of the masks that the stats are measured on
 
 /// PVT_NOTHING_INSIDE, with the options that would help.
@@ -66,6 +69,9 @@ pvtStatus pvtFailNothingInside(pvtContext* context, const pvtBuild* build);
 bool pvtFindVoxelBounds(const pvtBitGrid* grid, pvtBox3* bounds);
 /// Makes the bounds hold the set voxels.
 void pvtWidenBounds(const pvtBitGrid* grid, pvtBox3* bounds);
+/// [wu³] The measure of a mesh in the build's views, which it needs.
+pvtStatus pvtMeasureTriangles(pvtContext* context, const pvtBuild* build, const pvtMesh* mesh,
+                              double* measure);
 /// The measure of everything that may be covered, into the stats; needs the views.
 pvtStatus pvtMeasureCeiling(pvtContext* context, pvtBuild* build);
 static inline bool pvtIsPaper(const pvtBuild* build)
