@@ -50,6 +50,17 @@ static bool IsZero(const void* bytes, size_t count)
 // Runs something whole on a mesh; `*empty` tells whether the output was left empty.
 typedef pvtStatus RunFcn(pvtContext* context, const pvtMesh* mesh, bool* empty);
 
+static pvtStatus RunBuildBy(pvtContext* context, const pvtMesh* mesh,
+                            const pvtBuildOptions* options, pvtBuildStats* stats, bool* empty)
+{
+    pvtOccluder occluder;
+    memset(&occluder, 0xA5, sizeof occluder);
+    const pvtStatus status = pvtBuildOccluder(context, options, mesh, &occluder, stats);
+    *empty = IsZero(&occluder, sizeof occluder);
+    pvtOccluder_Free(context, &occluder);
+    return status;
+}
+
 static pvtStatus RunBuildWithin(pvtContext* context, const pvtMesh* mesh, pvtMethod method,
                                 double tolerance, bool* empty)
 {
@@ -60,12 +71,7 @@ static pvtStatus RunBuildWithin(pvtContext* context, const pvtMesh* mesh, pvtMet
     options.tolerance = (pvtLength){tolerance, true};
     options.method = method;
     options.views.count = 1;
-    pvtOccluder occluder;
-    memset(&occluder, 0xA5, sizeof occluder);
-    const pvtStatus status = pvtBuildOccluder(context, &options, mesh, &occluder, NULL);
-    *empty = IsZero(&occluder, sizeof occluder);
-    pvtOccluder_Free(context, &occluder);
-    return status;
+    return RunBuildBy(context, mesh, &options, NULL, empty);
 }
 
 static pvtStatus RunBuild(pvtContext* context, const pvtMesh* mesh, pvtMethod method, bool* empty)
@@ -91,13 +97,9 @@ static pvtStatus RunBandBuild(pvtContext* context, const pvtMesh* mesh, bool* em
     options.error = 0.5;
     options.views.count = 6;
     options.effort = PVT_EFFORT_FAST;
-    pvtOccluder occluder;
     pvtBuildStats stats;
-    memset(&occluder, 0xA5, sizeof occluder);
-    const pvtStatus status = pvtBuildOccluder(context, &options, mesh, &occluder, &stats);
+    const pvtStatus status = RunBuildBy(context, mesh, &options, &stats, empty);
     assert_true(status != PVT_OK || stats.tolerance > 0.0);
-    *empty = IsZero(&occluder, sizeof occluder);
-    pvtOccluder_Free(context, &occluder);
     return status;
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "hills.h"
+#include "score.h"
 #include "warnings.h"
 
 #include "base/random.h"
 #include "base/vector.h"
 
 #include <math.h>
-#include <paravent/evaluate.h>
 #include <paravent/occluder.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,16 +20,27 @@ static pvtBuildOptions GetQuickOptions(void)
     return options;
 }
 
-static pvtQuadScore Score(pvtContext* context, const pvtMesh* mesh, const pvtMesh* occluder)
+typedef void MakeMeshFcn(pvtContext* context, pvtMesh* mesh);
+
+typedef struct Outcome {
+    pvtMesh mesh;
+    pvtOccluder occluder;
+    pvtBuildStats stats;
+} Outcome;
+
+static Outcome Build(pvtContext* context, MakeMeshFcn* make, const pvtBuildOptions* options)
 {
-    pvtEvaluateOptions options = pvtDefaultEvaluateOptions();
-    options.views = 64;
-    options.quads = 4000;
-    pvtEvaluation evaluation;
-    CHECK_OK(context, pvtEvaluateOccluders(context, &options, mesh, occluder, 1, &evaluation));
-    const pvtQuadScore score = evaluation.occluders[0].uniform;
-    pvtEvaluation_Free(context, &evaluation);
-    return score;
+    Outcome outcome;
+    make(context, &outcome.mesh);
+    CHECK_OK(context,
+             pvtBuildOccluder(context, options, &outcome.mesh, &outcome.occluder, &outcome.stats));
+    return outcome;
+}
+
+static void FreeOutcome(pvtContext* context, Outcome* outcome)
+{
+    pvtOccluder_Free(context, &outcome->occluder);
+    pvtMesh_Free(context, &outcome->mesh);
 }
 
 static double GetDistanceToSegment(pvtVec3 p, pvtVec3 a, pvtVec3 b)
@@ -92,23 +103,20 @@ static void hills_without_an_inside_are_hidden_behind_nearly_as_well(void** stat
     (void)state;
     Warnings warnings;
     pvtContext* context = CreateWarningContext(&warnings);
-    pvtMesh hills;
-    MakeHills(context, &hills);
     const pvtBuildOptions options = GetQuickOptions();
-    pvtOccluder occluder;
-    pvtBuildStats stats;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
-    assert_true(occluder.mesh.triangleCount <= 64);
-    assert_true(stats.outside == 0);
-    assert_true(stats.tolerance >= stats.voxelSize);
-    CHECK_NEAR(stats.errorBound, sqrt(3.0) * stats.voxelSize + stats.tolerance, 1e-9);
-    assert_true(GetFarthest(&occluder.mesh, &hills) <= stats.errorBound);
+    Outcome outcome = Build(context, MakeHills, &options);
+    const pvtMesh* occluder = &outcome.occluder.mesh;
+    const pvtBuildStats* stats = &outcome.stats;
+    assert_true(occluder->triangleCount <= 64);
+    assert_true(stats->outside == 0);
+    assert_true(stats->tolerance >= stats->voxelSize);
+    CHECK_NEAR(stats->errorBound, sqrt(3.0) * stats->voxelSize + stats->tolerance, 1e-9);
+    assert_true(GetFarthest(occluder, &outcome.mesh) <= stats->errorBound);
     assert_non_null(strstr(warnings.text, "triangles may stray from it by"));
-    const pvtQuadScore score = Score(context, &hills, &occluder.mesh);
+    const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, occluder, 64);
     assert_true(score.recall > 0.9);
     assert_true(score.precision > 0.998);
-    pvtOccluder_Free(context, &occluder);
-    pvtMesh_Free(context, &hills);
+    FreeOutcome(context, &outcome);
     DestroyTestContext(context);
 }
 
@@ -117,23 +125,18 @@ static void more_triangles_stray_no_farther(void** state)
     (void)state;
     static const int budgets[] = {8, 64, 400};
     pvtContext* context = CreateTestContext(2);
-    pvtMesh hills;
-    MakeHills(context, &hills);
     double tolerances[3] = {0};
     for (int i = 0; i < 3; ++i) {
         pvtBuildOptions options = GetQuickOptions();
         options.budget = budgets[i];
-        pvtOccluder occluder;
-        pvtBuildStats stats;
-        CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
-        assert_true(stats.outside == 0);
-        tolerances[i] = stats.tolerance;
-        pvtOccluder_Free(context, &occluder);
+        Outcome outcome = Build(context, MakeHills, &options);
+        assert_true(outcome.stats.outside == 0);
+        tolerances[i] = outcome.stats.tolerance;
+        FreeOutcome(context, &outcome);
     }
     assert_true(tolerances[0] >= tolerances[1]);
     assert_true(tolerances[1] >= tolerances[2]);
     assert_true(tolerances[0] > tolerances[2]);
-    pvtMesh_Free(context, &hills);
     DestroyTestContext(context);
 }
 
@@ -141,16 +144,11 @@ static void a_tolerance_that_is_asked_for_stands(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
-    pvtMesh hills;
-    MakeHills(context, &hills);
     pvtBuildOptions options = GetQuickOptions();
     options.tolerance = (pvtLength){0.05, false};
-    pvtOccluder occluder;
-    pvtBuildStats stats;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
-    assert_true(stats.tolerance == 0.05);
-    pvtOccluder_Free(context, &occluder);
-    pvtMesh_Free(context, &hills);
+    Outcome outcome = Build(context, MakeHills, &options);
+    assert_true(outcome.stats.tolerance == 0.05);
+    FreeOutcome(context, &outcome);
     DestroyTestContext(context);
 }
 
@@ -160,42 +158,37 @@ static void a_band_keeps_within_the_error_that_is_asked_for(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
-    pvtMesh hills;
-    MakeHills(context, &hills);
     pvtBuildOptions options = GetQuickOptions();
     options.error = 0.3;
-    pvtOccluder occluder;
-    pvtBuildStats stats;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, &hills, &occluder, &stats));
-    assert_true(stats.outside == 0);
-    assert_true(stats.tolerance > 0.1);
-    assert_true(stats.errorBound <= 0.3 + 1e-9);
-    assert_true(GetFarthest(&occluder.mesh, &hills) <= 0.3);
-    const pvtQuadScore score = Score(context, &hills, &occluder.mesh);
+    Outcome outcome = Build(context, MakeHills, &options);
+    assert_true(outcome.stats.outside == 0);
+    assert_true(outcome.stats.tolerance > 0.1);
+    assert_true(outcome.stats.errorBound <= 0.3 + 1e-9);
+    assert_true(GetFarthest(&outcome.occluder.mesh, &outcome.mesh) <= 0.3);
+    const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 64);
     assert_true(score.recall > 0.9);
     assert_true(score.precision > 0.995);
-    pvtOccluder_Free(context, &occluder);
-    pvtMesh_Free(context, &hills);
+    FreeOutcome(context, &outcome);
     DestroyTestContext(context);
 }
 
 // Of a block's corner: it has no inside, but all of it is flat.
+static void MakeWalls(pvtContext* context, pvtMesh* mesh)
+{
+    const pvtVec3 corners[] = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}, {0, 0, 3}, {0, 2, 3}};
+    const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 4, 5, 0, 5, 3};
+    CHECK_OK(context, pvtCreateMesh(context, corners, 6, indices, 4, mesh));
+}
+
 static void flat_walls_need_no_band(void** state)
 {
     (void)state;
     pvtContext* context = CreateTestContext(2);
-    const pvtVec3 corners[] = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}, {0, 0, 3}, {0, 2, 3}};
-    const uint32_t indices[] = {0, 1, 2, 0, 2, 3, 0, 4, 5, 0, 5, 3};
-    pvtMesh walls;
-    CHECK_OK(context, pvtCreateMesh(context, corners, 6, indices, 4, &walls));
     const pvtBuildOptions options = GetQuickOptions();
-    pvtOccluder occluder;
-    pvtBuildStats stats;
-    CHECK_OK(context, pvtBuildOccluder(context, &options, &walls, &occluder, &stats));
-    assert_true(stats.tolerance == 0.0);
-    assert_int_equal(stats.surfacePanels, 2);
-    pvtOccluder_Free(context, &occluder);
-    pvtMesh_Free(context, &walls);
+    Outcome outcome = Build(context, MakeWalls, &options);
+    assert_true(outcome.stats.tolerance == 0.0);
+    assert_int_equal(outcome.stats.surfacePanels, 2);
+    FreeOutcome(context, &outcome);
     DestroyTestContext(context);
 }
 
@@ -248,7 +241,7 @@ static void MakeRibbons(pvtContext* context, pvtMesh* mesh)
 static void gaps_stay_open(void** state)
 {
     (void)state;
-    void (*const makers[])(pvtContext*, pvtMesh*) = {MakeLeaves, MakeRibbons};
+    MakeMeshFcn* const makers[] = {MakeLeaves, MakeRibbons};
     pvtContext* context = CreateTestContext(2);
     for (int i = 0; i < 2; ++i) {
         pvtMesh mesh;
@@ -271,22 +264,21 @@ static void gaps_stay_open(void** state)
 static void the_same_comes_out_on_any_number_of_threads(void** state)
 {
     (void)state;
-    pvtOccluder occluders[2];
+    Outcome outcomes[2];
     pvtContext* contexts[2];
+    pvtBuildOptions options = GetQuickOptions();
+    options.resolution = 48;
     for (int i = 0; i < 2; ++i) {
         contexts[i] = CreateTestContext(i == 0 ? 1 : 4);
-        pvtMesh hills;
-        MakeHills(contexts[i], &hills);
-        pvtBuildOptions options = GetQuickOptions();
-        options.resolution = 48;
-        CHECK_OK(contexts[i], pvtBuildOccluder(contexts[i], &options, &hills, &occluders[i], NULL));
-        pvtMesh_Free(contexts[i], &hills);
+        outcomes[i] = Build(contexts[i], MakeHills, &options);
     }
-    assert_int_equal(occluders[0].mesh.positionCount, occluders[1].mesh.positionCount);
-    assert_memory_equal(occluders[0].mesh.positions, occluders[1].mesh.positions,
-                        occluders[0].mesh.positionCount * sizeof *occluders[0].mesh.positions);
+    const pvtMesh* one = &outcomes[0].occluder.mesh;
+    const pvtMesh* four = &outcomes[1].occluder.mesh;
+    assert_int_equal(one->positionCount, four->positionCount);
+    assert_memory_equal(one->positions, four->positions,
+                        one->positionCount * sizeof *one->positions);
     for (int i = 0; i < 2; ++i) {
-        pvtOccluder_Free(contexts[i], &occluders[i]);
+        FreeOutcome(contexts[i], &outcomes[i]);
         DestroyTestContext(contexts[i]);
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "hills.h"
+#include "score.h"
 #include "warnings.h"
 
 #include "base/vector.h"
@@ -159,14 +160,7 @@ static pvtQuadScore ScoreBuild(pvtContext* context, const pvtBuildOptions* optio
     pvtBuildStats stats;
     CHECK_OK(context, pvtBuildOccluder(context, options, mesh, &occluder, &stats));
     assert_true(stats.outside == 0 || options->tolerance.value > 0.0);
-    pvtEvaluateOptions evaluate = pvtDefaultEvaluateOptions();
-    evaluate.views = views;
-    evaluate.quads = 4000;
-    pvtEvaluation evaluation;
-    CHECK_OK(context,
-             pvtEvaluateOccluders(context, &evaluate, mesh, &occluder.mesh, 1, &evaluation));
-    const pvtQuadScore score = evaluation.occluders[0].uniform;
-    pvtEvaluation_Free(context, &evaluation);
+    const pvtQuadScore score = ScoreUniform(context, mesh, &occluder.mesh, views);
     pvtOccluder_Free(context, &occluder);
     return score;
 }
