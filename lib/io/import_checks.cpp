@@ -321,6 +321,17 @@ void CheckPly(string_view bytes)
     }
 }
 
+// In case that the header's lines end in \r\n, assimp leaves out a \n at the begin of the data,
+// which may as well be the first byte of a coordinate. With such a line end both are right.
+string EndPlyHeader(string_view bytes)
+{
+    const PlyHeader header = ParsePlyHeader(bytes);
+    const size_t data = bytes.size() - header.data.size();
+    const bool isLeftOut = header.format != "ascii" && header.data.substr(0, 1) == "\n" &&
+                           bytes.substr(data - 2, 1) != "\r";
+    return isLeftOut ? string(bytes.substr(0, data - 1)) + "\r\n" + string(header.data) : string();
+}
+
 void CheckStl(string_view bytes)
 {
     constexpr size_t headerSize = 84, triangleSize = 50, window = 512;

@@ -253,9 +253,11 @@ void CheckBytes(const Input& input, const std::string& ending)
     }
 }
 
-Result ReadModel(const Input& input, const std::string& ending)
+Result ReadModel(const Input& file, const std::string& ending)
 {
-    CheckBytes(input, ending);
+    CheckBytes(file, ending);
+    const std::string ended = ending == "ply" ? pvt::EndPlyHeader({file.bytes, file.size}) : "";
+    const Input input = ended.empty() ? file : Input{ended.data(), ended.size()};
     const std::string name = "model." + ending;
     Assimp::Importer importer;
     KeepOneLoader(importer, ending);

@@ -3,6 +3,8 @@
 // glTF does, so that a mesh is the same in each.
 #include "writer.hpp"
 
+#include <cstring>
+
 namespace
 {
 
@@ -64,16 +66,47 @@ void WritePlyHeader(const pvtSaveJob& job, pvt::Writer& writer)
     writer.Number(triangleCount) << "\nproperty list uchar uint vertex_indices\nend_header\n";
 }
 
+// assimp, and what reads by it, takes a \n right behind the header for a part of it. So the first
+// of the positions changes its place with one that begins otherwise.
+class PlyOrder
+{
+  public:
+    explicit PlyOrder(const pvtMesh& mesh)
+    {
+        while (first_ < mesh.positionCount && BeginsWithLineEnd(mesh.positions[first_])) {
+            ++first_;
+        }
+        first_ = first_ < mesh.positionCount ? first_ : 0;
+    }
+    std::size_t operator[](std::size_t position) const
+    {
+        return position == 0 ? first_ : position == first_ ? 0 : position;
+    }
+
+  private:
+    static bool BeginsWithLineEnd(const pvtVec3& position)
+    {
+        const float x = static_cast<float>(position.x);
+        std::uint32_t bits;
+        std::memcpy(&bits, &x, sizeof bits);
+        return (bits & 0xff) == '\n';
+    }
+
+    std::size_t first_ = 0;
+};
+
 void WritePly(const pvtSaveJob& job, pvtOutput* output)
 {
+    const PlyOrder order(*job.items[0].mesh);
     pvt::Writer writer(job.context, output);
     WritePlyHeader(job, writer);
     for (std::size_t i = 0; i < job.count; ++i) {
         const pvtMesh& mesh = *job.items[i].mesh;
         for (std::size_t p = 0; p < mesh.positionCount; ++p) {
-            writer.PutFloat(mesh.positions[p].x);
-            writer.PutFloat(mesh.positions[p].y);
-            writer.PutFloat(mesh.positions[p].z);
+            const pvtVec3& v = mesh.positions[i == 0 ? order[p] : p];
+            writer.PutFloat(v.x);
+            writer.PutFloat(v.y);
+            writer.PutFloat(v.z);
             writer.FlushIfFull();
         }
     }
@@ -83,7 +116,8 @@ void WritePly(const pvtSaveJob& job, pvtOutput* output)
         for (std::size_t t = 0; t < mesh.triangleCount; ++t) {
             writer.PutByte(3);
             for (std::size_t k = 0; k < 3; ++k) {
-                writer.PutU32(base + mesh.indices[3 * t + k]);
+                const std::uint32_t index = mesh.indices[3 * t + k];
+                writer.PutU32(base + (i == 0 ? static_cast<std::uint32_t>(order[index]) : index));
             }
             writer.FlushIfFull();
         }

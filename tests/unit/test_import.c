@@ -106,6 +106,51 @@ static void what_was_saved_comes_back(void** state)
     pvtMesh_Free(f->context, &cube);
 }
 
+// Of a triangle with 1.5, whose lowest byte is `byte`, as its first coordinate.
+static size_t WriteBinaryPly(const char* lineEnd, uint8_t byte, char* ply, float* first)
+{
+    static const char* const lines[] = {"ply",
+                                        "format binary_little_endian 1.0",
+                                        "element vertex 3",
+                                        "property float x",
+                                        "property float y",
+                                        "property float z",
+                                        "element face 1",
+                                        "property list uchar uint vertex_indices",
+                                        "end_header"};
+    char* at = ply;
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
+        at += sprintf(at, "%s%s", lines[i], lineEnd);
+    }
+    const uint32_t bits = 0x3fc00000 | byte;
+    const float zeros[8] = {0, 0, 0, 1, 0, 0, 0, 1};
+    const uint8_t face[13] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
+    memcpy(first, &bits, sizeof bits);
+    memcpy(at, &bits, sizeof bits);
+    memcpy(at + 4, zeros, sizeof zeros);
+    memcpy(at + 36, face, sizeof face);
+    return (size_t)(at - ply) + 36 + sizeof face;
+}
+
+// Among them those that could be taken for more of the header.
+static void a_binary_ply_may_begin_with_any_byte(void** state)
+{
+    Fixture* f = *state;
+    static const char* const lineEnds[] = {"\n", "\r\n"};
+    static const uint8_t bytes[] = {0, '\t', '\n', '\f', '\r', ' ', 'e', 255};
+    for (int i = 0; i < 2; ++i) {
+        for (size_t b = 0; b < sizeof bytes; ++b) {
+            char ply[512];
+            float first;
+            const size_t size = WriteBinaryPly(lineEnds[i], bytes[b], ply, &first);
+            pvtModel_Free(f->context, &f->model);
+            CHECK_OK(f->context, LoadBytes(f, "a.ply", (const uint8_t*)ply, size));
+            assert_int_equal(f->model.mesh.triangleCount, 1);
+            CheckBounds(&f->model.mesh, (pvtVec3){0, 0, 0}, (pvtVec3){(double)first, 1, 1}, 0.0);
+        }
+    }
+}
+
 static void stl_comes_in_as_text_and_as_bytes(void** state)
 {
     Fixture* f = *state;
@@ -309,6 +354,7 @@ int main(void)
         TEST(obj_polygons_and_objects_come_in),
         TEST(no_other_file_is_opened_by_an_obj),
         TEST(what_was_saved_comes_back),
+        TEST(a_binary_ply_may_begin_with_any_byte),
         TEST(stl_comes_in_as_text_and_as_bytes),
         TEST(nodes_of_dae_and_fbx_are_placed_and_wound_outwards),
         TEST(lies_are_refused_with_their_place_and_reason),

@@ -170,6 +170,32 @@ static void names_that_are_no_utf8_do_not_stop_a_save(void** state)
     pvtMesh_Free(f->context, &cube);
 }
 
+// Readers take it for a part of the header.
+static void no_ply_begins_with_a_line_end(void** state)
+{
+    Fixture* f = *state;
+    const uint32_t bits[2] = {0x3fc0000a, 0x3fc0000b};
+    float x[2];
+    memcpy(x, bits, sizeof x);
+    const pvtVec3 positions[3] = {{(double)x[0], 2, 0}, {(double)x[0], 3, 0}, {(double)x[1], 0, 5}};
+    const uint32_t indices[3] = {0, 1, 2};
+    pvtMesh mesh;
+    CHECK_OK(f->context, pvtCreateMesh(f->context, positions, 3, indices, 1, &mesh));
+    const pvtSaveItem items[2] = {{.name = "a", .mesh = &mesh}, {.name = "b", .mesh = &mesh}};
+    const char* path = InFolder(&f->folder, "a.ply");
+    CHECK_OK(f->context, pvtSaveModel(f->context, path, items, 2));
+    size_t size = 0;
+    char* ply = ReadText(path, &size);
+    const char* data = strstr(ply, "end_header\n") + strlen("end_header\n");
+    assert_memory_equal(data, &bits[1], sizeof bits[1]);
+    // Of the first triangle two indices changed places with them, of the second one none.
+    const uint8_t faces[26] = {3, 2, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0,
+                               3, 3, 0, 0, 0, 4, 0, 0, 0, 5, 0, 0, 0};
+    assert_memory_equal(data + 6 * 12, faces, sizeof faces);
+    free(ply);
+    pvtMesh_Free(f->context, &mesh);
+}
+
 static void obj_and_ply_are_written_to_the_letter(void** state)
 {
     Fixture* f = *state;
@@ -407,6 +433,7 @@ int main(void)
         TEST(the_restart_index_is_never_written),
         TEST(names_that_are_no_utf8_do_not_stop_a_save),
         TEST(obj_and_ply_are_written_to_the_letter),
+        TEST(no_ply_begins_with_a_line_end),
         TEST(a_scene_of_godot_is_written_to_the_letter),
         TEST(instances_in_a_scene_of_godot_share_their_occluder),
         TEST(names_in_a_scene_of_godot_are_valid_and_its_own),
