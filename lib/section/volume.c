@@ -5,6 +5,8 @@
 
 #include <paravent/section.h>
 
+enum { MIN_CELLS = 4096 }; // of a task
+
 // The block of 64 × 64 bits in place: bit c of word r goes to bit r of word c. Blocks of halving
 // size are swapped across the diagonal (Warren, Hacker's Delight, 2nd edition 2012, section 7-3,
 // with the lowest bit first).
@@ -194,6 +196,23 @@ static void FreeCells(pvtContext* context, pvtSliceVolume* volume)
     volume->cells = NULL;
 }
 
+typedef struct TurnTask {
+    const uint64_t* cells;
+    uint64_t* const* turned; // of each axis
+} TurnTask;
+
+static void TurnCells(size_t begin, size_t end, int worker, void* taskData)
+{
+    (void)worker;
+    const TurnTask* task = taskData;
+    for (size_t i = begin; i < end; ++i) {
+        const uint64_t word = task->cells[i];
+        task->turned[PVT_AXIS_X][i] = SwapHighDigits(SwapLowDigits(word));
+        task->turned[PVT_AXIS_Y][i] = SwapHighDigits(word);
+        task->turned[PVT_AXIS_Z][i] = word;
+    }
+}
+
 pvtStatus pvtAddSliceCells(pvtContext* context, const pvtCellGrid* cells, pvtSliceVolume* volume)
 {
     // Where either is set. Only its words are its own.
@@ -206,7 +225,7 @@ pvtStatus pvtAddSliceCells(pvtContext* context, const pvtCellGrid* cells, pvtSli
                                           : pvtContext_GetStatus(context);
     pvtRelease(context, some.words);
     for (int axis = 0; axis < 3 && status == PVT_OK; ++axis) {
-        volume->cellWords[axis] = pvtAllocate(context, cells->count, sizeof(uint64_t));
+        volume->cellWords[axis] = pvtAllocateUnset(context, cells->count, sizeof(uint64_t));
         status = volume->cellWords[axis] != NULL ? PVT_OK : pvtContext_GetStatus(context);
     }
     if (status != PVT_OK) {
@@ -214,12 +233,8 @@ pvtStatus pvtAddSliceCells(pvtContext* context, const pvtCellGrid* cells, pvtSli
         return status;
     }
     volume->cells = cells;
-    for (size_t i = 0; i < cells->count; ++i) {
-        const uint64_t word = cells->cells[i];
-        volume->cellWords[PVT_AXIS_X][i] = SwapHighDigits(SwapLowDigits(word));
-        volume->cellWords[PVT_AXIS_Y][i] = SwapHighDigits(word);
-        volume->cellWords[PVT_AXIS_Z][i] = word;
-    }
+    TurnTask task = {cells->cells, volume->cellWords};
+    pvtParallelFor(context, TurnCells, cells->count, MIN_CELLS, &task);
     return PVT_OK;
 }
 
