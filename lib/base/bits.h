@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 static inline size_t pvtGetWordCount(size_t bits)
 {
@@ -59,6 +60,25 @@ static inline uint64_t pvtSpreadBits(uint64_t bits)
     const uint64_t top =
         ((picked & UINT64_C(0x7f7f7f7f7f7f7f7f)) + UINT64_C(0x7f7f7f7f7f7f7f7f)) | picked;
     return (top >> 7) & ones;
+}
+
+/// Eight bytes of 0 or 1 to eight bits, lowest first.
+static inline uint64_t pvtPackBytes(uint64_t bytes)
+{
+    // Each byte's own multiple brings it to its place in the highest byte, and no two meet.
+    return (bytes * UINT64_C(0x0102040810204080)) >> 56;
+}
+
+/// The bits of 64 bytes of 0 or 1, lowest first.
+static inline uint64_t pvtPackWord(const uint8_t bytes[64])
+{
+    uint64_t word = 0;
+    for (unsigned i = 0; i < 8; ++i) {
+        uint64_t eight;
+        memcpy(&eight, bytes + 8 * (size_t)i, sizeof eight);
+        word |= pvtPackBytes(eight) << (8 * i);
+    }
+    return word;
 }
 
 /// Sets the bits from `begin` to `end` − 1 of a row; none when end ≤ begin.

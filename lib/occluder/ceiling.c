@@ -8,6 +8,7 @@
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
+#include "base/vectors.h"
 #include "occlusion/distance.h"
 #include "occlusion/mask.h"
 #include "voxel/bit_grid.h"
@@ -20,6 +21,7 @@ enum {
     MANY_SPLITS = 6, // along a voxel: with more, its faces are drawn instead
     BLOCK = 8,       // [vx] along a side
     ROWS = BLOCK * BLOCK,
+    VIEW_GROUP = 4,
 };
 
 // Points from `first` up to that of the next block.
@@ -47,7 +49,8 @@ typedef struct CeilingTask {
 } CeilingTask;
 
 // Of a row that may be outside of the grid, the voxels that are set or have cells.
-static uint64_t GetSome(const pvtBitGrid* grid, const pvtCellGrid* cells, size_t word, int y, int z)
+PVT_IN_CLONES uint64_t GetSome(const pvtBitGrid* grid, const pvtCellGrid* cells, size_t word, int y,
+                               int z)
 {
     if (y < 0 || z < 0 || y >= grid->frame.size[1] || z >= grid->frame.size[2]) {
         return 0;
@@ -57,8 +60,8 @@ static uint64_t GetSome(const pvtBitGrid* grid, const pvtCellGrid* cells, size_t
 }
 
 // Set voxels of one word that have a clear neighbour, without cells; outside of the grid is clear.
-static uint64_t GetBorderWord(const pvtBitGrid* grid, const pvtCellGrid* cells, size_t word, int y,
-                              int z)
+PVT_IN_CLONES uint64_t GetBorderWord(const pvtBitGrid* grid, const pvtCellGrid* cells, size_t word,
+                                     int y, int z)
 {
     const uint64_t here = pvtBitGrid_GetRow(grid, y, z)[word];
     if (here == 0) {
@@ -80,7 +83,7 @@ typedef struct PointList {
     size_t blockCount;
 } PointList;
 
-static void AddPoint(PointList* list, pvtVec3 point)
+PVT_IN_CLONES void AddPoint(PointList* list, pvtVec3 point)
 {
     if (list->points != NULL) {
         list->points[0][list->count] = (float)point.x;
@@ -90,7 +93,7 @@ static void AddPoint(PointList* list, pvtVec3 point)
     ++list->count;
 }
 
-static void AddVoxel(const int voxel[3], int splits, PointList* list)
+PVT_IN_CLONES void AddVoxel(const int voxel[3], int splits, PointList* list)
 {
     const int each = splits * splits * splits;
     if (list->points == NULL) {
@@ -108,7 +111,7 @@ static void AddVoxel(const int voxel[3], int splits, PointList* list)
 }
 
 // The cells of one of the groups that a voxel is cut into, `side` cells long.
-static uint64_t GetGroup(int group, int side)
+PVT_IN_CLONES uint64_t GetGroup(int group, int side)
 {
     static const uint64_t corners[] = {[1] = 1, [2] = UINT64_C(0x330033), [4] = ~UINT64_C(0)};
     const int across = PVT_CELLS / side;
@@ -117,7 +120,7 @@ static uint64_t GetGroup(int group, int side)
 }
 
 // Of the cells' coordinates, each the sum of a one and a two.
-static pvtVec3 GetMiddle(uint64_t cells)
+PVT_IN_CLONES pvtVec3 GetMiddle(uint64_t cells)
 {
     static const uint64_t ones[3] = {UINT64_C(0xAAAAAAAAAAAAAAAA), UINT64_C(0xF0F0F0F0F0F0F0F0),
                                      UINT64_C(0xFFFF0000FFFF0000)};
@@ -134,7 +137,7 @@ static pvtVec3 GetMiddle(uint64_t cells)
 
 // As many points along a voxel's side as it needs: one in the middle of each group of cells that
 // has any, or eight in each cell.
-static void AddCells(const int voxel[3], uint64_t cells, int splits, PointList* list)
+PVT_IN_CLONES void AddCells(const int voxel[3], uint64_t cells, int splits, PointList* list)
 {
     const int side = splits == 1 ? 4 : splits == 2 ? 2 : 1;
     const int parts = splits > PVT_CELLS ? 8 : 1;
@@ -170,7 +173,7 @@ typedef struct RowWords {
     uint64_t any;
 } RowWords;
 
-static void GetRowWords(const ListTask* task, size_t word, int y, int z, RowWords* rows)
+PVT_IN_CLONES void GetRowWords(const ListTask* task, size_t word, int y, int z, RowWords* rows)
 {
     const int* size = task->grid->frame.size;
     rows->any = 0;
@@ -186,8 +189,8 @@ static void GetRowWords(const ListTask* task, size_t word, int y, int z, RowWord
     }
 }
 
-static void ListBlock(const ListTask* task, const RowWords* rows, const int corner[3],
-                      PointList* list)
+PVT_IN_CLONES void ListBlock(const ListTask* task, const RowWords* rows, const int corner[3],
+                             PointList* list)
 {
     if (list->blocks != NULL) {
         list->blocks[list->blockCount] =
@@ -212,7 +215,7 @@ static void ListBlock(const ListTask* task, const RowWords* rows, const int corn
     }
 }
 
-static void ListLayer(const ListTask* task, int z, PointList* list)
+PVT_IN_CLONES void ListLayer(const ListTask* task, int z, PointList* list)
 {
     const pvtBitGrid* grid = task->grid;
     for (int y = 0; y < grid->frame.size[1]; y += BLOCK) {
@@ -228,6 +231,7 @@ static void ListLayer(const ListTask* task, int z, PointList* list)
     }
 }
 
+PVT_VECTOR_CLONES
 static void CountLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
@@ -239,6 +243,7 @@ static void CountLayers(size_t begin, size_t end, int worker, void* taskData)
     }
 }
 
+PVT_VECTOR_CLONES
 static void StoreLayers(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
@@ -268,10 +273,20 @@ static int ClampToMask(float value, int size)
     return value <= 0.0F ? 0 : value >= (float)size ? size - 1 : (int)value;
 }
 
+// What a view makes of the points. Bytes, since with bits each point would wait for the one before,
+// which sets one of the same word.
+typedef struct Picture {
+    pvtMaskFrame frame;
+    pvtPointProjection projection;
+    float reach[2]; // [px] of a block's points from its middle
+    uint8_t pixels[PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE + 1]; // the last one: beside the mask
+} Picture;
+
 // Whether all pixels are set that points of a block may lie in.
-static bool IsBlockCovered(const CeilingTask* task, const pvtPointProjection* projection,
-                           const Block* block, const float reach[2], const uint64_t* rows)
+static bool IsBlockCovered(const CeilingTask* task, const Picture* picture, const Block* block)
 {
+    const pvtPointProjection* projection = &picture->projection;
+    const float* reach = picture->reach;
     const float center[3] = {(float)(BLOCK * block->place[0]) + 0.5F * BLOCK,
                              (float)(BLOCK * block->place[1]) + 0.5F * BLOCK,
                              (float)(BLOCK * block->place[2]) + 0.5F * BLOCK};
@@ -280,66 +295,79 @@ static bool IsBlockCovered(const CeilingTask* task, const pvtPointProjection* pr
         x += center[axis] * projection->right[axis];
         y += center[axis] * projection->up[axis];
     }
-    const size_t words = (size_t)task->size / 64;
-    const size_t first = (size_t)ClampToMask(x - reach[0], task->size);
-    const size_t last = (size_t)ClampToMask(x + reach[0], task->size);
+    const int first = ClampToMask(x - reach[0], task->size);
+    const int last = ClampToMask(x + reach[0], task->size);
     const int end = ClampToMask(y + reach[1], task->size);
     for (int row = ClampToMask(y - reach[1], task->size); row <= end; ++row) {
-        if (!pvtIsBitRangeSet(rows + (size_t)row * words, first, last + 1)) {
-            return false;
+        for (int column = first; column <= last; ++column) {
+            if (picture->pixels[row * task->size + column] == 0) {
+                return false;
+            }
         }
     }
     return true;
 }
 
-static void SplatBlock(const CeilingTask* task, const pvtPointProjection* projection,
-                       const Block* block, uint64_t* rows)
+static void SplatBlock(const CeilingTask* task, const Block* block, Picture* picture)
 {
-    const size_t words = (size_t)task->size / 64;
-    const float size = (float)task->size;
     const size_t end = block[1].first;
-    float places[2][PVT_POINT_GROUP];
+    int32_t pixels[PVT_POINT_GROUP];
     for (size_t first = block->first; first < end; first += PVT_POINT_GROUP) {
         const size_t left = end - first;
         const size_t count = left < PVT_POINT_GROUP ? left : PVT_POINT_GROUP;
-        pvtProjectPoints(projection, task->points, first, count, places);
+        pvtFindPixels(&picture->projection, task->points, first, count, task->size, pixels);
         for (size_t i = 0; i < count; ++i) {
-            const float x = places[0][i], y = places[1][i];
-            if (x >= 0.0F && y >= 0.0F && x < size && y < size) {
-                pvtSetBit(rows + (size_t)y * words, (size_t)x);
-            }
+            picture->pixels[pixels[i]] = 1;
         }
     }
 }
 
-static void SplatPoints(const CeilingTask* task, const pvtMaskFrame* frame, uint64_t* rows)
+static void BeginPicture(const CeilingTask* task, size_t view, Picture* picture)
 {
     static const float MORE = 0.01F; // [px] than rounding could move a point by
-    const pvtPointProjection projection = MakeProjection(frame, &task->frame);
-    float reach[2] = {MORE, MORE};
+    picture->frame = pvtMakeMaskFrame(&task->views->views[view], task->bounds, task->size);
+    picture->projection = MakeProjection(&picture->frame, &task->frame);
+    picture->reach[0] = picture->reach[1] = MORE;
     for (int axis = 0; axis < 3; ++axis) {
-        reach[0] += 0.5F * BLOCK * fabsf(projection.right[axis]);
-        reach[1] += 0.5F * BLOCK * fabsf(projection.up[axis]);
+        picture->reach[0] += 0.5F * BLOCK * fabsf(picture->projection.right[axis]);
+        picture->reach[1] += 0.5F * BLOCK * fabsf(picture->projection.up[axis]);
     }
-    for (size_t b = 0; b < task->blockCount; ++b) {
-        if (!IsBlockCovered(task, &projection, &task->blocks[b], reach, rows)) {
-            SplatBlock(task, &projection, &task->blocks[b], rows);
-        }
-    }
+    memset(picture->pixels, 0, (size_t)task->size * (size_t)task->size);
 }
 
+static double MeasurePicture(const CeilingTask* task, const Picture* picture)
+{
+    uint64_t rows[PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64];
+    for (size_t i = 0; i < (size_t)task->size * (size_t)task->size / 64; ++i) {
+        rows[i] = pvtPackWord(picture->pixels + 64 * i);
+    }
+    const double sum = (double)pvtSumDistances(rows, task->size, task->table) / 256.0;
+    const double pixel = picture->frame.pixelSize;
+    return picture->frame.weight * sum * pixel * pixel * pixel;
+}
+
+// Points are too many for a cache: a block goes to a few views while it is at hand.
 static void MeasureViews(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
     const CeilingTask* task = taskData;
-    for (size_t v = begin; v < end && !pvtIsCancelled(task->context); ++v) {
-        uint64_t rows[PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE / 64];
-        memset(rows, 0, sizeof rows);
-        const pvtMaskFrame frame =
-            pvtMakeMaskFrame(&task->views->views[v], task->bounds, task->size);
-        SplatPoints(task, &frame, rows);
-        const double sum = (double)pvtSumDistances(rows, task->size, task->table) / 256.0;
-        task->results[v] = frame.weight * sum * frame.pixelSize * frame.pixelSize * frame.pixelSize;
+    for (size_t group = begin; group < end && !pvtIsCancelled(task->context); ++group) {
+        Picture pictures[VIEW_GROUP];
+        const size_t first = group * VIEW_GROUP, left = task->views->count - first;
+        const size_t count = left < VIEW_GROUP ? left : VIEW_GROUP;
+        for (size_t v = 0; v < count; ++v) {
+            BeginPicture(task, first + v, &pictures[v]);
+        }
+        for (size_t b = 0; b < task->blockCount; ++b) {
+            for (size_t v = 0; v < count; ++v) {
+                if (!IsBlockCovered(task, &pictures[v], &task->blocks[b])) {
+                    SplatBlock(task, &task->blocks[b], &pictures[v]);
+                }
+            }
+        }
+        for (size_t v = 0; v < count; ++v) {
+            task->results[first + v] = MeasurePicture(task, &pictures[v]);
+        }
     }
 }
 
@@ -413,7 +441,8 @@ static pvtStatus ListPoints(pvtContext* context, const pvtBitGrid* grid, const p
 
 static pvtStatus SumViews(pvtContext* context, CeilingTask* task, double* measure)
 {
-    pvtParallelFor(context, MeasureViews, task->views->count, 1, task);
+    const size_t groups = (task->views->count + VIEW_GROUP - 1) / VIEW_GROUP;
+    pvtParallelFor(context, MeasureViews, groups, 1, task);
     if (pvtIsCancelled(context)) {
         return pvtFailCancelled(context);
     }

@@ -12,6 +12,7 @@
 #include "voxel/cell_grid.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -30,10 +31,15 @@ enum {
 // not wait for each other. Rows have a node more at each end.
 typedef struct Slab {
     int8_t* rows;
+    uint8_t* kinds;           // of the rows
     int width, height, depth; // padded width
     int from;                 // the first layer
     int begin, end;           // the layers of its own
 } Slab;
+
+// A row whose nodes are all the same stays as it is while the rows are, too, that it is relaxed
+// from.
+typedef enum RowKind { ROW_MIXED, ROW_INSIDE, ROW_OUTSIDE } RowKind;
 
 typedef struct Maker {
     const pvtBitGrid* allowed;
@@ -49,14 +55,24 @@ void pvtField_Free(pvtContext* context, pvtField* field)
     *field = (pvtField){0};
 }
 
+static size_t GetRowIndex(const Slab* slab, int y, int z)
+{
+    return (size_t)(z - slab->from) * (size_t)slab->height + (size_t)y;
+}
+
 static int8_t* GetRow(const Slab* slab, int y, int z)
 {
-    const size_t layer = (size_t)(z - slab->from);
-    return slab->rows + (layer * (size_t)slab->height + (size_t)y) * (size_t)slab->width;
+    return slab->rows + GetRowIndex(slab, y, z) * (size_t)slab->width;
+}
+
+static RowKind FindKind(const int8_t* row, int width)
+{
+    const bool isSame = memcmp(row, row + 1, (size_t)width - 1) == 0;
+    return !isSame || abs(row[0]) != FAR ? ROW_MIXED : row[0] > 0 ? ROW_INSIDE : ROW_OUTSIDE;
 }
 
 // What of a node is inside, in 64ths of a voxel; the surface passes the middle of border cells.
-static int CountAllowed(const Maker* maker, int x, int y, int z)
+PVT_IN_CLONES int CountAllowed(const Maker* maker, int x, int y, int z)
 {
     const int n = maker->field->nodeSize;
     const int* size = maker->allowed->frame.size;
@@ -73,7 +89,7 @@ static int CountAllowed(const Maker* maker, int x, int y, int z)
             uint64_t some = pvtBitGrid_GetRow(&maker->cells->voxels, j, k)[word] & mask;
             for (; some != 0; some &= some - 1) {
                 const int i = (int)(word * 64) + __builtin_ctzll(some);
-                const size_t voxel = pvtCellGrid_Find(maker->cells, i, j, k);
+                const size_t voxel = pvtCellGrid_Rank(maker->cells, i, j, k);
                 count += pvtCountBits(maker->cells->cells[voxel]);
                 if (maker->cells->border != NULL) {
                     count += pvtCountBits(maker->cells->border[voxel]) / 2;
@@ -85,7 +101,7 @@ static int CountAllowed(const Maker* maker, int x, int y, int z)
 }
 
 // A node's own share tells how far it is from the border.
-static int8_t GetShare(const Maker* maker, int x, int y, int z)
+PVT_IN_CLONES int8_t GetShare(const Maker* maker, int x, int y, int z)
 {
     const int n = maker->field->nodeSize;
     const int full = 64 * n * n * n;
@@ -99,7 +115,7 @@ typedef struct RowBits {
     uint64_t all, some;
 } RowBits;
 
-static RowBits GetRowBits(const Maker* maker, int y, int z, size_t word)
+PVT_IN_CLONES RowBits GetRowBits(const Maker* maker, int y, int z, size_t word)
 {
     const int n = maker->field->nodeSize;
     const int* size = maker->allowed->frame.size;
@@ -118,6 +134,7 @@ static RowBits GetRowBits(const Maker* maker, int y, int z, size_t word)
     return bits;
 }
 
+PVT_VECTOR_CLONES
 static void StartRow(const Maker* maker, int y, int z, int8_t* row)
 {
     const int n = maker->field->nodeSize, width = maker->field->size[0];
@@ -126,14 +143,14 @@ static void StartRow(const Maker* maker, int y, int z, int8_t* row)
     for (int first = 0; first < width; first += perWord) {
         const int count = width - first < perWord ? width - first : perWord;
         const RowBits bits = GetRowBits(maker, y, z, (size_t)(first / perWord));
-        const bool isAll = bits.all == ~UINT64_C(0), isNone = bits.some == 0;
+        const bool isAll = bits.all == ~UINT64_C(0);
         memset(row + first, isAll ? FAR : -FAR, (size_t)count);
-        for (int i = 0; i < count && !isAll && !isNone; ++i) {
-            const uint64_t mask = node << (i * n);
-            if ((bits.some & mask) != 0) {
-                row[first + i] =
-                    (int8_t)((bits.all & mask) == mask ? FAR : GetShare(maker, first + i, y, z));
-            }
+        uint64_t mask = 0;
+        for (uint64_t some = isAll ? 0 : bits.some; some != 0; some &= ~mask) {
+            const int i = __builtin_ctzll(some) / n;
+            mask = node << (i * n);
+            row[first + i] =
+                (int8_t)((bits.all & mask) == mask ? FAR : GetShare(maker, first + i, y, z));
         }
     }
 }
@@ -193,20 +210,40 @@ static void FillEnds(int8_t* first, int width, int length)
     memset(first + width, first[width - 1], (size_t)length);
 }
 
-static void RelaxRow(const Slab* slab, int y, int z, int way, int8_t* buffer)
+// The rows that one is relaxed from: that before it in its layer, and three of the layer before. As
+// many as there are.
+static int FindSources(const Slab* slab, int y, int z, int way, int sources[4][2])
 {
-    int8_t* row = GetRow(slab, y, z);
-    const int width = slab->width;
+    int count = 0;
     for (int i = 0; i < 4; ++i) {
-        // The row before in this layer, and three of the layer before.
         const int fromY = i == 0 ? y - way : y + i - 2;
         const int fromZ = i == 0 ? z : z - way;
-        if (fromY < 0 || fromY >= slab->height || fromZ < slab->from ||
-            fromZ >= slab->from + slab->depth) {
-            continue;
+        if (fromY >= 0 && fromY < slab->height && fromZ >= slab->from &&
+            fromZ < slab->from + slab->depth) {
+            sources[count][0] = fromY;
+            sources[count++][1] = fromZ;
         }
-        const bool isStraight = i == 0 || i == 2;
-        RelaxFromRow(GetRow(slab, fromY, fromZ), width, isStraight ? STEPS : EDGE,
+    }
+    return count;
+}
+
+static void RelaxRow(const Slab* slab, int y, int z, int way, int8_t* buffer)
+{
+    uint8_t* kind = &slab->kinds[GetRowIndex(slab, y, z)];
+    int8_t* row = GetRow(slab, y, z);
+    const int width = slab->width;
+    int sources[4][2];
+    const int count = FindSources(slab, y, z, way, sources);
+    bool isSame = *kind != ROW_MIXED;
+    for (int i = 0; i < count && isSame; ++i) {
+        isSame = slab->kinds[GetRowIndex(slab, sources[i][0], sources[i][1])] == *kind;
+    }
+    if (isSame) {
+        return;
+    }
+    for (int i = 0; i < count; ++i) {
+        const bool isStraight = sources[i][0] == y || sources[i][1] == z;
+        RelaxFromRow(GetRow(slab, sources[i][0], sources[i][1]), width, isStraight ? STEPS : EDGE,
                      isStraight ? EDGE : CORNER, row);
     }
     for (int step = 1; step <= MOST_STEP; step *= 2) {
@@ -215,12 +252,17 @@ static void RelaxRow(const Slab* slab, int y, int z, int way, int8_t* buffer)
         RelaxWithin(buffer + MOST_STEP, width - 2, step, row + 1);
     }
     FillEnds(row + 1, width - 2, 1);
+    *kind = (uint8_t)FindKind(row, width);
 }
 
 static void StoreRow(const pvtField* field, int y, int z, const int8_t* row)
 {
     int8_t* depths = field->depths + field->places[1][y] + field->places[2][z];
-    for (int x = 0; x < field->size[0]; ++x) {
+    const int width = field->size[0], whole = width / BRICK * BRICK;
+    for (int x = 0; x < whole; x += BRICK) {
+        memcpy(depths + field->places[0][x], row + x, BRICK);
+    }
+    for (int x = whole; x < width; ++x) {
         depths[field->places[0][x]] = row[x];
     }
 }
@@ -237,6 +279,8 @@ static void MakeSlabs(size_t begin, size_t end, int worker, void* taskData)
             for (int y = 0; y < slab->height; ++y) {
                 int8_t* row = GetRow(slab, y, z);
                 StartRow(maker, y, z, row + 1);
+                FillEnds(row + 1, slab->width - 2, 1);
+                slab->kinds[GetRowIndex(slab, y, z)] = (uint8_t)FindKind(row, slab->width);
                 RelaxRow(slab, y, z, 1, buffer);
             }
         }
@@ -288,10 +332,11 @@ static pvtStatus PlaceSlabs(pvtContext* context, Maker* maker)
         const int begin = size[2] * s / SLABS, end = size[2] * (s + 1) / SLABS;
         const int from = begin > PVT_FIELD_BAND ? begin - PVT_FIELD_BAND : 0;
         const int stop = end + PVT_FIELD_BAND < size[2] ? end + PVT_FIELD_BAND : size[2];
-        *slab = (Slab){NULL, size[0] + 2, size[1], stop - from, from, begin, end};
+        *slab = (Slab){NULL, NULL, size[0] + 2, size[1], stop - from, from, begin, end};
         const size_t rows = (size_t)slab->height * (size_t)slab->depth;
         slab->rows = pvtAllocateUnset(context, rows, (size_t)slab->width);
-        if (slab->rows == NULL) {
+        slab->kinds = pvtAllocateUnset(context, rows, sizeof *slab->kinds);
+        if (slab->rows == NULL || slab->kinds == NULL) {
             return pvtContext_GetStatus(context);
         }
     }
@@ -324,6 +369,7 @@ pvtStatus pvtCreateField(pvtContext* context, const pvtBitGrid* allowed, const p
     }
     for (int s = 0; s < SLABS; ++s) {
         pvtRelease(context, maker.slabs[s].rows);
+        pvtRelease(context, maker.slabs[s].kinds);
     }
     return status;
 }

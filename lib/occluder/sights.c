@@ -58,19 +58,27 @@ static bool IsInGrid(const pvtField* field, const int node[3])
 }
 
 // The middle of such a node is inside, or less than half a node away from it.
+static bool IsDepthIn(int8_t depth)
+{
+    return depth > -PVT_FIELD_STEPS / 2;
+}
+
 static bool IsIn(const pvtField* field, const int node[3])
 {
-    return IsInGrid(field, node) &&
-           pvtField_GetNode(field, node[0], node[1], node[2]) > -PVT_FIELD_STEPS / 2;
+    return IsInGrid(field, node) && IsDepthIn(pvtField_GetNode(field, node[0], node[1], node[2]));
 }
 
 // Bit 2a: beside it towards lower coordinates along axis a is a node that is not inside; bit 2a + 1
 // the same towards higher ones.
 static unsigned FindExposure(const pvtField* field, const int node[3])
 {
-    const bool isDeep = pvtField_GetNode(field, node[0], node[1], node[2]) > PVT_FIELD_STEPS;
+    const int8_t depth = pvtField_GetNode(field, node[0], node[1], node[2]);
+    if (!IsDepthIn(depth)) {
+        return 0;
+    }
+    const bool isDeep = depth > PVT_FIELD_STEPS;
     unsigned exposure = 0;
-    for (int axis = 0; axis < 3 && IsIn(field, node); ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
         for (int side = 0; side < 2; ++side) {
             int beside[3] = {node[0], node[1], node[2]};
             beside[axis] += side == 0 ? -1 : 1;
@@ -211,14 +219,9 @@ static uint64_t PackEven(uint64_t bits)
     return (bits | bits >> 16) & UINT64_C(0x00000000FFFFFFFF);
 }
 
-// Sets the pixels that a node covers, seen as a square; a small one sets that of its middle.
+// Sets the pixels that a node covers, seen as a square.
 static void SplatNode(pvtSightMask* mask, float x, float y, float reach)
 {
-    if (reach <= 0.5F * WIDENING) {
-        const size_t column = (size_t)x;
-        mask->words[column >> 6][(int)y] |= UINT64_C(1) << (column & 63);
-        return;
-    }
     const int left = (int)(x - reach + 0.5F), right = (int)(x + reach + 0.5F);
     const int low = (int)(y - reach + 0.5F), high = (int)(y + reach + 0.5F);
     for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
@@ -244,10 +247,15 @@ static pvtPointProjection MakeProjection(const pvtSight* sight)
     return projection;
 }
 
-static void SplatPoints(const Splatter* splatter, pvtSight* sight, size_t begin, size_t end)
+static float GetReach(const Splatter* splatter, const pvtSight* sight)
+{
+    return 0.5F * WIDENING * splatter->nodeSize / sight->pixelSize;
+}
+
+static void SplatNodes(const Splatter* splatter, pvtSight* sight, size_t begin, size_t end)
 {
     const pvtPointProjection projection = MakeProjection(sight);
-    const float reach = 0.5F * WIDENING * splatter->nodeSize / sight->pixelSize;
+    const float reach = GetReach(splatter, sight);
     float places[2][PVT_POINT_GROUP];
     for (size_t first = begin; first < end; first += PVT_POINT_GROUP) {
         const size_t count = end - first < PVT_POINT_GROUP ? end - first : PVT_POINT_GROUP;
@@ -257,6 +265,31 @@ static void SplatPoints(const Splatter* splatter, pvtSight* sight, size_t begin,
             if (x >= 0.0F && y >= 0.0F && x < SIZE && y < SIZE) {
                 SplatNode(&sight->goal, x, y, reach);
             }
+        }
+    }
+}
+
+// Nodes that are small set the pixel of their middle each. It is a byte, since with bits each would
+// wait for the one before, which sets one of the same word.
+static void SplatMiddles(const Splatter* splatter, const pvtSight* sight, size_t begin, size_t end,
+                         uint8_t pixels[SIZE * SIZE + 1])
+{
+    const pvtPointProjection projection = MakeProjection(sight);
+    int32_t places[PVT_POINT_GROUP];
+    for (size_t first = begin; first < end; first += PVT_POINT_GROUP) {
+        const size_t count = end - first < PVT_POINT_GROUP ? end - first : PVT_POINT_GROUP;
+        pvtFindPixels(&projection, splatter->points, first, count, SIZE, places);
+        for (size_t i = 0; i < count; ++i) {
+            pixels[places[i]] = 1;
+        }
+    }
+}
+
+static void PackPixels(const uint8_t pixels[SIZE * SIZE], pvtSightMask* mask)
+{
+    for (size_t y = 0; y < SIZE; ++y) {
+        for (size_t half = 0; half < PVT_SIGHT_WORDS; ++half) {
+            mask->words[half][y] = pvtPackWord(pixels + SIZE * y + 64 * half);
         }
     }
 }
@@ -282,16 +315,24 @@ static void FillGaps(pvtSightMask* mask)
 // on other sides only are left out.
 static void SplatGoal(const Splatter* splatter, pvtVec3 direction, pvtSight* sight)
 {
-    memset(&sight->goal, 0, sizeof sight->goal);
+    const bool isSmall = GetReach(splatter, sight) <= 0.5F * WIDENING;
+    uint8_t pixels[SIZE * SIZE + 1] = {0}; // the last one: beside the mask
     unsigned facing = 0;
+    memset(&sight->goal, 0, sizeof sight->goal);
     for (int axis = 0; axis < 3; ++axis) {
         const double along = pvtGetAxis(direction, axis);
         facing |= (along < 0.0 ? 1U : along > 0.0 ? 2U : 0U) << (2 * axis);
     }
     for (unsigned e = 1; e < EXPOSURES; ++e) {
-        if ((e & facing) != 0) {
-            SplatPoints(splatter, sight, splatter->starts[e], splatter->starts[e + 1]);
+        const size_t begin = splatter->starts[e], end = splatter->starts[e + 1];
+        if ((e & facing) != 0 && isSmall) {
+            SplatMiddles(splatter, sight, begin, end, pixels);
+        } else if ((e & facing) != 0) {
+            SplatNodes(splatter, sight, begin, end);
         }
+    }
+    if (isSmall) {
+        PackPixels(pixels, &sight->goal);
     }
     FillGaps(&sight->goal);
 }
