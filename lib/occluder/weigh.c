@@ -67,6 +67,15 @@ static void AddLayer(const pvtSightMask* restrict mask, pvtSightRows rows,
     }
 }
 
+// Of what was drawn the last time: the others are clear.
+static void ClearRows(pvtSightMask* mask, pvtSightRows rows)
+{
+    for (int half = 0; half < PVT_SIGHT_WORDS && rows.first < rows.end; ++half) {
+        memset(mask->words[half] + rows.first, 0,
+               (size_t)(rows.end - rows.first) * sizeof mask->words[half][0]);
+    }
+}
+
 static void DrawMasks(size_t begin, size_t end, int worker, void* taskData)
 {
     (void)worker;
@@ -80,8 +89,8 @@ static void DrawMasks(size_t begin, size_t end, int worker, void* taskData)
         pvtSightMask* layers = puller->layers[b];
         pvtProjectCorners(sight, set, places);
         memset(layers, 0, sizeof puller->layers[b]);
-        memset(masks, 0, (size_t)set->triangleCount * sizeof *masks);
         for (int t = 0; t < set->triangleCount; ++t) {
+            ClearRows(&masks[t], rows[t]);
             rows[t] = pvtDrawSightTriangle(set, places, t, puller->options.inset, &masks[t]);
             AddLayer(&masks[t], rows[t], layers);
         }

@@ -295,6 +295,38 @@ typedef struct CellSlicing {
     Slicing whole, partly; // of the voxels, one cell each
 } CellSlicing;
 
+// Cells in the order x, y, z are digits of base four. This changes the places of the lower two,
+static inline uint64_t SwapLowDigits(uint64_t cells)
+{
+    uint64_t swap = (cells ^ cells >> 3) & UINT64_C(0x0A0A0A0A0A0A0A0A);
+    cells ^= swap ^ swap << 3;
+    swap = (cells ^ cells >> 6) & UINT64_C(0x00CC00CC00CC00CC);
+    return cells ^ swap ^ swap << 6;
+}
+
+// and this those of the upper two.
+static inline uint64_t SwapHighDigits(uint64_t cells)
+{
+    uint64_t swap = (cells ^ cells >> 12) & UINT64_C(0x0000F0F00000F0F0);
+    cells ^= swap ^ swap << 12;
+    swap = (cells ^ cells >> 24) & UINT64_C(0x00000000FF00FF00);
+    return cells ^ swap ^ swap << 24;
+}
+
+// Cell n of (u, v) as bit u + 4 v + 16 n.
+static inline uint64_t TurnCells(uint64_t cells, pvtAxis axis)
+{
+    switch (axis) {
+    case PVT_AXIS_X:
+        return SwapHighDigits(SwapLowDigits(cells));
+    case PVT_AXIS_Y:
+        return SwapHighDigits(cells);
+    case PVT_AXIS_Z:
+        break;
+    }
+    return cells;
+}
+
 // All cells of a voxel of the column (u, v), at position n along the axis.
 static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t n)
 {
@@ -316,7 +348,8 @@ static uint64_t GetColumnCells(const CellSlicing* slicing, int u, int v, int64_t
     const int x = slicing->axis == PVT_AXIS_X ? at : u;
     const int y = slicing->axis == PVT_AXIS_X ? u : slicing->axis == PVT_AXIS_Y ? at : v;
     const int z = slicing->axis == PVT_AXIS_Z ? at : v;
-    return volume->cellWords[slicing->axis][pvtCellGrid_Rank(volume->cells, x, y, z)];
+    const uint64_t cells = volume->cells->cells[pvtCellGrid_Rank(volume->cells, x, y, z)];
+    return TurnCells(cells, slicing->axis);
 }
 
 // The voxels of a column that the patches over it reach into.

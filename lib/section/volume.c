@@ -5,8 +5,6 @@
 
 #include <paravent/section.h>
 
-enum { MIN_CELLS = 4096 }; // of a task
-
 // The block of 64 × 64 bits in place: bit c of word r goes to bit r of word c. Blocks of halving
 // size are swapped across the diagonal (Warren, Hacker's Delight, 2nd edition 2012, section 7-3,
 // with the lowest bit first).
@@ -159,24 +157,6 @@ pvtStatus pvtCreateSliceVolume(pvtContext* context, const pvtBitGrid* grid, pvtS
     return status;
 }
 
-// Cells in the order x, y, z are digits of base four. This changes the places of the lower two,
-static uint64_t SwapLowDigits(uint64_t cells)
-{
-    uint64_t swap = (cells ^ cells >> 3) & UINT64_C(0x0A0A0A0A0A0A0A0A);
-    cells ^= swap ^ swap << 3;
-    swap = (cells ^ cells >> 6) & UINT64_C(0x00CC00CC00CC00CC);
-    return cells ^ swap ^ swap << 6;
-}
-
-// and this those of the upper two.
-static uint64_t SwapHighDigits(uint64_t cells)
-{
-    uint64_t swap = (cells ^ cells >> 12) & UINT64_C(0x0000F0F00000F0F0);
-    cells ^= swap ^ swap << 12;
-    swap = (cells ^ cells >> 24) & UINT64_C(0x00000000FF00FF00);
-    return cells ^ swap ^ swap << 24;
-}
-
 static void FreeColumns(pvtContext* context, pvtSliceColumns axes[3])
 {
     for (int axis = 0; axis < 3; ++axis) {
@@ -186,61 +166,28 @@ static void FreeColumns(pvtContext* context, pvtSliceColumns axes[3])
     }
 }
 
-static void FreeCells(pvtContext* context, pvtSliceVolume* volume)
-{
-    FreeColumns(context, volume->partly);
-    for (int axis = 0; axis < 3; ++axis) {
-        pvtRelease(context, volume->cellWords[axis]);
-        volume->cellWords[axis] = NULL;
-    }
-    volume->cells = NULL;
-}
-
-typedef struct TurnTask {
-    const uint64_t* cells;
-    uint64_t* const* turned; // of each axis
-} TurnTask;
-
-static void TurnCells(size_t begin, size_t end, int worker, void* taskData)
-{
-    (void)worker;
-    const TurnTask* task = taskData;
-    for (size_t i = begin; i < end; ++i) {
-        const uint64_t word = task->cells[i];
-        task->turned[PVT_AXIS_X][i] = SwapHighDigits(SwapLowDigits(word));
-        task->turned[PVT_AXIS_Y][i] = SwapHighDigits(word);
-        task->turned[PVT_AXIS_Z][i] = word;
-    }
-}
-
 pvtStatus pvtAddSliceCells(pvtContext* context, const pvtCellGrid* cells, pvtSliceVolume* volume)
 {
     // Where either is set. Only its words are its own.
     pvtBitGrid some = *volume->grid;
-    some.words = pvtAllocate(context, some.wordCount, sizeof *some.words);
+    some.words = pvtAllocateUnset(context, some.wordCount, sizeof *some.words);
     for (size_t i = 0; i < some.wordCount && some.words != NULL; ++i) {
         some.words[i] = volume->grid->words[i] | cells->voxels.words[i];
     }
     pvtStatus status = some.words != NULL ? CreateAxes(context, &some, volume->partly)
                                           : pvtContext_GetStatus(context);
     pvtRelease(context, some.words);
-    for (int axis = 0; axis < 3 && status == PVT_OK; ++axis) {
-        volume->cellWords[axis] = pvtAllocateUnset(context, cells->count, sizeof(uint64_t));
-        status = volume->cellWords[axis] != NULL ? PVT_OK : pvtContext_GetStatus(context);
+    if (status == PVT_OK) {
+        volume->cells = cells;
+    } else {
+        FreeColumns(context, volume->partly);
     }
-    if (status != PVT_OK) {
-        FreeCells(context, volume);
-        return status;
-    }
-    volume->cells = cells;
-    TurnTask task = {cells->cells, volume->cellWords};
-    pvtParallelFor(context, TurnCells, cells->count, MIN_CELLS, &task);
-    return PVT_OK;
+    return status;
 }
 
 void pvtSliceVolume_Free(pvtContext* context, pvtSliceVolume* volume)
 {
     FreeColumns(context, volume->axes);
-    FreeCells(context, volume);
+    FreeColumns(context, volume->partly);
     *volume = (pvtSliceVolume){0};
 }

@@ -16,7 +16,7 @@ pvtStatus pvtCreateCellGrid(pvtContext* context, pvtBitGrid* voxels, pvtCellGrid
 {
     *grid = (pvtCellGrid){.voxels = *voxels};
     *voxels = (pvtBitGrid){0};
-    grid->ranks = pvtAllocate(context, grid->voxels.wordCount, sizeof *grid->ranks);
+    grid->ranks = pvtAllocateUnset(context, grid->voxels.wordCount, sizeof *grid->ranks);
     for (size_t word = 0; word < grid->voxels.wordCount && grid->ranks != NULL; ++word) {
         grid->ranks[word] = (uint32_t)grid->count;
         grid->count += (size_t)pvtCountBits(grid->voxels.words[word]);

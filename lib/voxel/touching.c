@@ -156,7 +156,7 @@ static pvtStatus FillLists(pvtContext* context, Lister* lister, pvtTouching* tou
                        "the surface's triangles lie in too many voxels; lower the resolution");
     }
     touching->starts[count] = (uint32_t)sum;
-    touching->triangles = pvtAllocate(context, (size_t)sum, sizeof *touching->triangles);
+    touching->triangles = pvtAllocateUnset(context, (size_t)sum, sizeof *touching->triangles);
     if (touching->triangles == NULL) {
         return pvtContext_GetStatus(context);
     }
@@ -170,7 +170,7 @@ pvtStatus pvtListTouching(pvtContext* context, const pvtMesh* mesh, const pvtCel
     *touching = (pvtTouching){.mesh = mesh};
     Lister lister = {.context = context, .cells = cells, .mesh = mesh};
     lister.counts = pvtAllocate(context, cells->count, sizeof *lister.counts);
-    touching->starts = pvtAllocate(context, cells->count + 1, sizeof *touching->starts);
+    touching->starts = pvtAllocateUnset(context, cells->count + 1, sizeof *touching->starts);
     pvtStatus status = lister.counts == NULL || touching->starts == NULL
                            ? pvtContext_GetStatus(context)
                            : AddTriangles(context, &lister);

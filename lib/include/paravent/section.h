@@ -71,7 +71,6 @@ typedef struct pvtSliceVolume {
     pvtSliceColumns axes[3];
     const pvtCellGrid* cells;  ///< borrowed; null until pvtAddSliceCells
     pvtSliceColumns partly[3]; ///< of its voxels and those of the grid
-    uint64_t* cellWords[3];    ///< its cells by axis: cell n of (u, v) is bit u + 4 v + 16 n
 } pvtSliceVolume;
 
 /// Takes a little more than three times the grid's memory.
