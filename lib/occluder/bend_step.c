@@ -13,6 +13,10 @@ enum { MORE_VIEWS = 3 }; // for each that is optimised for
 
 static const double MAX_BEND_BYTES = 0x1p27;
 
+// Touched voxels as a multiple of those of a square along the longest side: a cube has 6. With
+// more, there are few moves in the time that --effort fast has, and it is spent better before.
+static const double MUCH_SURFACE = 8.0;
+
 // Views between those that are optimised for, so that nothing is gained from their pixels alone:
 // three times as many, turned by a radian about the axis that their weights go by. None for a list,
 // which stands for itself.
@@ -118,16 +122,20 @@ static pvtStatus Bend(pvtContext* context, pvtBuild* build)
     return status;
 }
 
-pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
+static bool MayBend(const pvtBuild* build)
 {
     const size_t triangles = build->occluder.mesh.triangleCount;
+    const double side = build->stats.resolution;
+    const bool isLarge = (double)build->solid.surfaceCount > MUCH_SURFACE * side * side;
+    return !(build->options->effort == PVT_EFFORT_FAST && isLarge) && triangles <= PVT_MAX_FACETS &&
+           pvtGetFacetBytes(triangles, build->views.count) <= MAX_BEND_BYTES;
+}
+
+pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build)
+{
     if (!pvtMayAscend(build) || !pvtIsMeasured(build)) {
         return PVT_OK;
     }
-    pvtStatus status = PVT_OK;
-    if (triangles <= PVT_MAX_FACETS &&
-        pvtGetFacetBytes(triangles, build->views.count) <= MAX_BEND_BYTES) {
-        status = Bend(context, build);
-    }
+    const pvtStatus status = MayBend(build) ? Bend(context, build) : PVT_OK;
     return status == PVT_OK ? TakeFlatIfBetter(context, build) : status;
 }

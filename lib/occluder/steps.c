@@ -301,12 +301,18 @@ typedef struct SearchSize {
     int directions, depths, samplesPerBin;
 } SearchSize;
 
+// Of the voxels along the longest side, cubed: with more inside, sections are large, take long to
+// make polygons of, and change little from one depth to the next.
+static const double MUCH_INSIDE = 1.0 / 12.0;
+
 static SearchSize GetSearchSize(const pvtBuild* build)
 {
     const bool isFast = build->options->effort == PVT_EFFORT_FAST;
     // What ascends needs no more than a start, and leaves it far behind.
     if (pvtMayAscend(build) && pvtGetAscentBudget(build) == build->options->budget) {
-        return isFast ? (SearchSize){6, 16, 4} : (SearchSize){16, 16, 4};
+        const double much = MUCH_INSIDE * pow(build->stats.resolution, 3.0);
+        const bool isLarge = (double)build->solid.strictCount > much;
+        return isFast ? (SearchSize){6, isLarge ? 8 : 16, 4} : (SearchSize){16, 16, 4};
     }
     const pvtPlanOptions whole = pvtDefaultPlanOptions();
     // A third of the candidates: in a short search the others hardly count.
