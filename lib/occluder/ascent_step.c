@@ -84,6 +84,20 @@ static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal
     return MakeGoalWithin(context, build, goal);
 }
 
+double pvtGetTimeShare(const pvtBuild* build)
+{
+    // Touched voxels as a multiple of those of a square along the longest side: a cube has 6.
+    static const double MUCH_SURFACE = 8.0;
+    const double side = build->stats.resolution;
+    const double share = MUCH_SURFACE * side * side / (double)build->solid.surfaceCount;
+    return build->options->effort == PVT_EFFORT_FAST && share < 1.0 ? share : 1.0;
+}
+
+static int GetIterations(const pvtBuild* build, int iterations)
+{
+    return (int)(pvtGetTimeShare(build) * pvtSpreadEffort(iterations, pvtGetAscentBudget(build)));
+}
+
 static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
 {
     static const struct {
@@ -109,7 +123,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .seed = build->options->seed,
         .startEnds = build->startEnds,
         .startCount = build->startCount,
-        .iterations = pvtSpreadEffort(efforts[effort].iterations, budget),
+        .iterations = GetIterations(build, efforts[effort].iterations),
         .cycles = efforts[effort].cycles,
         .sights = efforts[effort].sights,
         .batch = efforts[effort].batch,

@@ -13,10 +13,6 @@ enum { MORE_VIEWS = 3 }; // for each that is optimised for
 
 static const double MAX_BEND_BYTES = 0x1p27;
 
-// Touched voxels as a multiple of those of a square along the longest side: a cube has 6. With
-// more, there are few moves in the time that --effort fast has, and it is spent better before.
-static const double MUCH_SURFACE = 8.0;
-
 // Views between those that are optimised for, so that nothing is gained from their pixels alone:
 // three times as many, turned by a radian about the axis that their weights go by. None for a list,
 // which stands for itself.
@@ -122,12 +118,11 @@ static pvtStatus Bend(pvtContext* context, pvtBuild* build)
     return status;
 }
 
+// Where time is short it is spent better on the steps before.
 static bool MayBend(const pvtBuild* build)
 {
     const size_t triangles = build->occluder.mesh.triangleCount;
-    const double side = build->stats.resolution;
-    const bool isLarge = (double)build->solid.surfaceCount > MUCH_SURFACE * side * side;
-    return !(build->options->effort == PVT_EFFORT_FAST && isLarge) && triangles <= PVT_MAX_FACETS &&
+    return pvtGetTimeShare(build) == 1.0 && triangles <= PVT_MAX_FACETS &&
            pvtGetFacetBytes(triangles, build->views.count) <= MAX_BEND_BYTES;
 }
 

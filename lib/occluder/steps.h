@@ -99,6 +99,9 @@ int pvtGetAscentBudget(const pvtBuild* build);
 pvtInterior pvtGetInterior(const pvtBuild* build);
 /// When the build's refinement is to end.
 pvtEnough pvtGetEnough(const pvtBuild* build);
+/// 1, or with --effort fast what is left of its time for refinement where there is much surface:
+/// the stages before it take as much more.
+double pvtGetTimeShare(const pvtBuild* build);
 /// How many steps or sweeps there are: fewer for more triangles, so that the time stays about the
 /// same.
 static inline int pvtSpreadEffort(int count, int triangles)
