@@ -93,11 +93,6 @@ double pvtGetTimeShare(const pvtBuild* build)
     return build->options->effort == PVT_EFFORT_FAST && share < 1.0 ? share : 1.0;
 }
 
-static int GetIterations(const pvtBuild* build, int iterations)
-{
-    return (int)(pvtGetTimeShare(build) * pvtSpreadEffort(iterations, pvtGetAscentBudget(build)));
-}
-
 static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
 {
     static const struct {
@@ -107,6 +102,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
                    [PVT_EFFORT_BEST] = {450, 16, 1024, 16, 12}};
     const int effort = (int)build->options->effort;
     const int budget = pvtGetAscentBudget(build);
+    const double share = pvtGetTimeShare(build);
     const pvtViewOptions views = pvtGetViewOptions(build);
     Goal goal;
     pvtStatus status = MakeGoal(context, build, &goal);
@@ -123,9 +119,9 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .seed = build->options->seed,
         .startEnds = build->startEnds,
         .startCount = build->startCount,
-        .iterations = GetIterations(build, efforts[effort].iterations),
+        .iterations = (int)(share * pvtSpreadEffort(efforts[effort].iterations, budget)),
         .cycles = efforts[effort].cycles,
-        .sights = efforts[effort].sights,
+        .sights = (int)(share * efforts[effort].sights),
         .batch = efforts[effort].batch,
         .polish = efforts[effort].polish,
         .enough = pvtGetEnough(build)};

@@ -5,6 +5,7 @@
 #include "check.h"
 #include "steps.h"
 
+#include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
 
@@ -22,7 +23,19 @@ enum { FEW_TRIANGLES = 16 }; // of a budget that cannot be expected to hide much
 static const double LITTLE_SHARE = 0.2;     // of what can be hidden: less is told
 static const double MIN_STRICT_SHARE = 0.5; // of the measure: less is told
 static const double COARSE_STEP = 0.25;     // [vx]
-static const double SAFE_SHARE = 0.8; // of the voxels: with more, that of the measure is not small
+static const double SAFE_SHARE = 0.8; // of the inside: with more, that of the measure is not small
+
+// Of the voxels that are inside, those that are allowed and the allowed parts of others.
+static double GetAllowedShare(const pvtBuild* build)
+{
+    const pvtCellGrid* cells = &build->cells;
+    uint64_t parts = 0;
+    for (size_t i = 0; i < cells->count; ++i) {
+        parts += (uint64_t)pvtCountBits(cells->cells[i]);
+    }
+    return ((double)pvtBitGrid_Count(&build->allowed) + (double)parts / 64.0) /
+           (double)build->solid.insideCount;
+}
 
 // A strict interior may be a small part of what the mesh hides: a chair's legs are all surface.
 // Then recall is low whatever the budget, and only other options help.
@@ -30,9 +43,7 @@ static pvtStatus CompareWithMesh(pvtContext* context, pvtBuild* build, bool* isT
 {
     pvtBox3 bounds;
     double hidden = 0.0;
-    const double share =
-        (double)pvtBitGrid_Count(&build->allowed) / (double)build->solid.insideCount;
-    if (build->stats.tolerance > 0.0 || share > SAFE_SHARE ||
+    if (build->stats.tolerance > 0.0 || GetAllowedShare(build) > SAFE_SHARE ||
         !pvtFindVoxelBounds(&build->solid.inside, &bounds)) {
         return PVT_OK;
     }
