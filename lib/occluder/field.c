@@ -71,58 +71,35 @@ static RowKind FindKind(const int8_t* row, int width)
     return !isSame || abs(row[0]) != FAR ? ROW_MIXED : row[0] > 0 ? ROW_INSIDE : ROW_OUTSIDE;
 }
 
-// What of a node is inside, in 64ths of a voxel; the surface passes the middle of border cells.
-PVT_IN_CLONES int CountAllowed(const Maker* maker, int x, int y, int z)
+// The rows of voxels that a row of nodes has, as far as there are any.
+typedef struct NodeRows {
+    int begin[2], end[2]; // y and z [vx]
+    bool isCut;           // by the end of the grid
+} NodeRows;
+
+PVT_IN_CLONES NodeRows GetNodeRows(const Maker* maker, int y, int z)
 {
     const int n = maker->field->nodeSize;
     const int* size = maker->allowed->frame.size;
-    int count = 0;
-    for (int k = z * n; k < (z + 1) * n && k < size[2]; ++k) {
-        for (int j = y * n; j < (y + 1) * n && j < size[1]; ++j) {
-            const unsigned first = (unsigned)(x * n) & 63;
-            const size_t word = (size_t)(x * n) / 64;
-            const uint64_t mask = pvtMakeMask(first, first + (unsigned)n);
-            count += 64 * pvtCountBits(pvtBitGrid_GetRow(maker->allowed, j, k)[word] & mask);
-            if (maker->cells == NULL) {
-                continue;
-            }
-            uint64_t some = pvtBitGrid_GetRow(&maker->cells->voxels, j, k)[word] & mask;
-            for (; some != 0; some &= some - 1) {
-                const int i = (int)(word * 64) + __builtin_ctzll(some);
-                const size_t voxel = pvtCellGrid_Rank(maker->cells, i, j, k);
-                count += pvtCountBits(maker->cells->cells[voxel]);
-                if (maker->cells->border != NULL) {
-                    count += pvtCountBits(maker->cells->border[voxel]) / 2;
-                }
-            }
-        }
+    NodeRows rows = {{y * n, z * n}, {(y + 1) * n, (z + 1) * n}, false};
+    for (int i = 0; i < 2; ++i) {
+        rows.isCut = rows.isCut || rows.end[i] > size[i + 1];
+        rows.end[i] = rows.end[i] < size[i + 1] ? rows.end[i] : size[i + 1];
     }
-    return count;
+    return rows;
 }
 
-// A node's own share tells how far it is from the border.
-PVT_IN_CLONES int8_t GetShare(const Maker* maker, int x, int y, int z)
-{
-    const int n = maker->field->nodeSize;
-    const int full = 64 * n * n * n;
-    const int count = CountAllowed(maker, x, y, z);
-    const int share = (2 * STEPS * count + full) / (2 * full) - NEAR;
-    return (int8_t)(count == 0 ? -FAR : count < full ? share : FAR);
-}
-
-// Voxels of a node's rows that are allowed throughout, and those that are anywhere in part.
-typedef struct RowBits {
+// Of a word of voxels along x, those that are allowed in all rows, and those that are in part in
+// any.
+typedef struct WordBits {
     uint64_t all, some;
-} RowBits;
+} WordBits;
 
-PVT_IN_CLONES RowBits GetRowBits(const Maker* maker, int y, int z, size_t word)
+PVT_IN_CLONES WordBits GetWordBits(const Maker* maker, const NodeRows* rows, size_t word)
 {
-    const int n = maker->field->nodeSize;
-    const int* size = maker->allowed->frame.size;
-    const bool isCut = (y + 1) * n > size[1] || (z + 1) * n > size[2];
-    RowBits bits = {isCut ? 0 : ~UINT64_C(0), 0};
-    for (int k = z * n; k < (z + 1) * n && k < size[2]; ++k) {
-        for (int j = y * n; j < (y + 1) * n && j < size[1]; ++j) {
+    WordBits bits = {rows->isCut ? 0 : ~UINT64_C(0), 0};
+    for (int k = rows->begin[1]; k < rows->end[1]; ++k) {
+        for (int j = rows->begin[0]; j < rows->end[0]; ++j) {
             const uint64_t allowed = pvtBitGrid_GetRow(maker->allowed, j, k)[word];
             bits.all &= allowed;
             bits.some |= allowed;
@@ -134,23 +111,60 @@ PVT_IN_CLONES RowBits GetRowBits(const Maker* maker, int y, int z, size_t word)
     return bits;
 }
 
+// What of each node of a word is inside, in 64ths of a voxel; the surface passes the middle of
+// border cells.
+PVT_IN_CLONES void CountWord(const Maker* maker, const NodeRows* rows, size_t word, int counts[64])
+{
+    const int n = maker->field->nodeSize;
+    const uint64_t node = pvtMakeMask(0, (unsigned)n);
+    const pvtCellGrid* cells = maker->cells;
+    memset(counts, 0, 64 * sizeof *counts);
+    for (int k = rows->begin[1]; k < rows->end[1]; ++k) {
+        for (int j = rows->begin[0]; j < rows->end[0]; ++j) {
+            const uint64_t allowed = pvtBitGrid_GetRow(maker->allowed, j, k)[word];
+            for (int i = 0; i < 64 / n && allowed != 0; ++i) {
+                counts[i] += 64 * pvtCountBits(allowed >> (i * n) & node);
+            }
+            const size_t at =
+                pvtGetRowIndex(maker->allowed, j, k) * maker->allowed->wordsPerRow + word;
+            uint64_t some = cells != NULL ? cells->voxels.words[at] : 0;
+            size_t voxel = some != 0 ? cells->ranks[at] : 0;
+            for (; some != 0; some &= some - 1, ++voxel) {
+                const uint64_t border = cells->border != NULL ? cells->border[voxel] : 0;
+                counts[__builtin_ctzll(some) / n] +=
+                    pvtCountBits(cells->cells[voxel]) + pvtCountBits(border) / 2;
+            }
+        }
+    }
+}
+
+// A node's own share tells how far it is from the border. `full` is a power of two, 1 << shift.
+PVT_IN_CLONES int8_t GetShare(int count, int shift)
+{
+    const int full = 1 << shift;
+    const int share = ((2 * STEPS * count + full) >> (shift + 1)) - NEAR;
+    return (int8_t)(count == 0 ? -FAR : count < full ? share : FAR);
+}
+
 PVT_VECTOR_CLONES
 static void StartRow(const Maker* maker, int y, int z, int8_t* row)
 {
     const int n = maker->field->nodeSize, width = maker->field->size[0];
     const int perWord = 64 / n;
-    const uint64_t node = pvtMakeMask(0, (unsigned)n);
+    const int shift = 6 + 3 * __builtin_ctz((unsigned)n);
+    const NodeRows rows = GetNodeRows(maker, y, z);
     for (int first = 0; first < width; first += perWord) {
+        const size_t word = (size_t)(first / perWord);
         const int count = width - first < perWord ? width - first : perWord;
-        const RowBits bits = GetRowBits(maker, y, z, (size_t)(first / perWord));
-        const bool isAll = bits.all == ~UINT64_C(0);
-        memset(row + first, isAll ? FAR : -FAR, (size_t)count);
-        uint64_t mask = 0;
-        for (uint64_t some = isAll ? 0 : bits.some; some != 0; some &= ~mask) {
-            const int i = __builtin_ctzll(some) / n;
-            mask = node << (i * n);
-            row[first + i] =
-                (int8_t)((bits.all & mask) == mask ? FAR : GetShare(maker, first + i, y, z));
+        const WordBits bits = GetWordBits(maker, &rows, word);
+        if (bits.all == ~UINT64_C(0) || bits.some == 0) {
+            memset(row + first, bits.some == 0 ? -FAR : FAR, (size_t)count);
+            continue;
+        }
+        int counts[64];
+        CountWord(maker, &rows, word, counts);
+        for (int i = 0; i < count; ++i) {
+            row[first + i] = GetShare(counts[i], shift);
         }
     }
 }
