@@ -103,6 +103,9 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
     const int effort = (int)build->options->effort;
     const int budget = pvtGetAscentBudget(build);
     const double share = pvtGetTimeShare(build);
+    // Along a surface triangles have a long way to where they are needed, for all effort.
+    const bool isSurface = build->options->terrain || build->isBand;
+    const int least = isSurface ? 1 : 0;
     const pvtViewOptions views = pvtGetViewOptions(build);
     Goal goal;
     pvtStatus status = MakeGoal(context, build, &goal);
@@ -110,7 +113,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .views = &views,
         .goal = goal.voxels,
         .goalCells = goal.cells,
-        .keepsToGoal = build->options->terrain || build->isBand,
+        .keepsToGoal = isSurface,
         .inside = &build->inside,
         .mesh = build->mesh,
         .flat = build->stats.tolerance > 0.0 ? &build->flat.mesh : NULL,
@@ -120,7 +123,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .startEnds = build->startEnds,
         .startCount = build->startCount,
         .iterations = (int)(share * pvtSpreadEffort(efforts[effort].iterations, budget)),
-        .cycles = efforts[effort].cycles,
+        .cycles = efforts[effort].cycles > least ? efforts[effort].cycles : least,
         .sights = (int)(share * efforts[effort].sights),
         .batch = efforts[effort].batch,
         .polish = efforts[effort].polish,
