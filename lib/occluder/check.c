@@ -21,13 +21,14 @@ typedef struct CheckTask {
     pvtContext* context;
     pvtInterior interior;
     const pvtMesh* mesh;
+    uint64_t enough;
     uint64_t* outside; // one a triangle
 } CheckTask;
 
 // What is found of a triangle.
 typedef struct Visit {
     const pvtInterior* interior;
-    uint64_t outside;
+    uint64_t outside, enough;
     bool isAnywhereAllowed;
 } Visit;
 
@@ -82,10 +83,11 @@ static void GetRange(const Piece* piece, int axis, int size, int range[2])
     range[1] = (int)fmin(ceil(high - SLACK) - 1.0, size);
 }
 
-// Whether the box around a piece of a voxel holds set cells only: most do, and need no clipping.
-static bool IsBoxSet(const Piece* piece, uint64_t cells, const int voxel[3])
+// The cells in the box around a piece of a voxel.
+static uint64_t GetBox(const Piece* piece, const int voxel[3])
 {
     int ranges[3][2];
+    uint64_t box = 0;
     for (int axis = 0; axis < 3; ++axis) {
         GetRange(piece, axis, INT_MAX, ranges[axis]);
         ranges[axis][0] -= PVT_CELLS * voxel[axis];
@@ -94,13 +96,11 @@ static bool IsBoxSet(const Piece* piece, uint64_t cells, const int voxel[3])
     for (int z = ranges[2][0]; z <= ranges[2][1]; ++z) {
         for (int y = ranges[1][0]; y <= ranges[1][1]; ++y) {
             for (int x = ranges[0][0]; x <= ranges[0][1]; ++x) {
-                if ((cells >> (x + PVT_CELLS * (y + PVT_CELLS * z)) & 1) == 0) {
-                    return false;
-                }
+                box |= UINT64_C(1) << (x + PVT_CELLS * (y + PVT_CELLS * z));
             }
         }
     }
-    return true;
+    return box;
 }
 
 // Where the edges of a convex piece meet a plane; false unless it goes through by more than the
@@ -185,8 +185,19 @@ static bool IsCellLeft(Visit* visit, const Piece* row, int x, size_t voxel, int 
 // Whether a piece of a voxel is where it may not be. Coordinates count in cells.
 static bool IsAnyCellLeft(Visit* visit, const Piece* piece, size_t index, const int voxel[3])
 {
-    if (IsBoxSet(piece, visit->interior->cells->cells[index], voxel)) {
+    const pvtCellGrid* cells = visit->interior->cells;
+    const bool hasBorder = visit->interior->touching != NULL;
+    const uint64_t box = GetBox(piece, voxel);
+    const uint64_t others = box & ~cells->cells[index];
+    if (others == 0) {
         visit->isAnywhereAllowed = visit->isAnywhereAllowed || piece->count > 0;
+        return false;
+    }
+    // What goes through no surface as a whole goes through none in any cell. Whether it passes an
+    // allowed one is not looked at here: there is none, or it need not be known any more.
+    if (hasBorder && (others & ~cells->border[index]) == 0 &&
+        (others == box || visit->isAnywhereAllowed) &&
+        !CrossesSurface(visit->interior, piece, index)) {
         return false;
     }
     int zs[2];
@@ -237,7 +248,7 @@ static void CheckRow(Visit* visit, const Piece* row, int y, int z)
     const pvtBitGrid* allowed = visit->interior->allowed;
     int xs[2];
     GetRange(row, 0, allowed->frame.size[0], xs);
-    for (int x = xs[0]; x <= xs[1]; ++x) {
+    for (int x = xs[0]; x <= xs[1] && visit->outside < visit->enough; ++x) {
         if (pvtBitGrid_Get(allowed, x, y, z)) {
             visit->isAnywhereAllowed = true;
         } else {
@@ -254,15 +265,16 @@ static uint64_t CheckTriangle(const CheckTask* task, size_t triangle)
         const pvtVec3 p = task->mesh->positions[task->mesh->indices[3 * triangle + (size_t)c]];
         whole.points[c] = pvtScale(pvtSub(p, frame->origin), 1.0 / frame->voxelSize);
     }
-    Visit visit = {.interior = &task->interior};
+    Visit visit = {.interior = &task->interior, .enough = task->enough};
     bool isSeen = false;
     int zs[2];
     GetRange(&whole, 2, frame->size[2], zs);
-    for (int z = zs[0]; z <= zs[1] && !pvtIsCancelled(task->context); ++z) {
+    for (int z = zs[0];
+         z <= zs[1] && visit.outside < visit.enough && !pvtIsCancelled(task->context); ++z) {
         const Piece slab = ClipToSlab(&whole, 2, z);
         int ys[2];
         GetRange(&slab, 1, frame->size[1], ys);
-        for (int y = ys[0]; y <= ys[1]; ++y) {
+        for (int y = ys[0]; y <= ys[1] && visit.outside < visit.enough; ++y) {
             const Piece row = ClipToSlab(&slab, 1, y);
             isSeen = isSeen || row.count > 0;
             CheckRow(&visit, &row, y, z);
@@ -282,9 +294,13 @@ static void CheckTriangles(size_t begin, size_t end, int worker, void* taskData)
 }
 
 pvtStatus pvtCheckTriangles(pvtContext* context, const pvtInterior* interior, const pvtMesh* mesh,
-                            uint64_t* outside)
+                            uint64_t enough, uint64_t* outside)
 {
-    CheckTask task = {.context = context, .interior = *interior, .mesh = mesh, .outside = outside};
+    CheckTask task = {.context = context,
+                      .interior = *interior,
+                      .mesh = mesh,
+                      .enough = enough,
+                      .outside = outside};
     if (interior->cells != NULL && interior->cells->count == 0) {
         task.interior.cells = NULL;
     }
@@ -300,7 +316,7 @@ pvtStatus pvtCheckOccluder(pvtContext* context, const pvtInterior* interior,
     if (counts == NULL) {
         return pvtContext_GetStatus(context);
     }
-    const pvtStatus status = pvtCheckTriangles(context, interior, occluder, counts);
+    const pvtStatus status = pvtCheckTriangles(context, interior, occluder, UINT64_MAX, counts);
     for (size_t t = 0; t < occluder->triangleCount; ++t) {
         *outside += counts[t];
     }

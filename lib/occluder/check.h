@@ -5,8 +5,8 @@
 
 #include <paravent/occluder.h>
 
-/// As pvtCheckOccluder; `outside` has a count for each triangle.
+/// As pvtCheckOccluder; `outside` has a count for each triangle, which ends at `enough`.
 pvtStatus pvtCheckTriangles(pvtContext* context, const pvtInterior* interior, const pvtMesh* mesh,
-                            uint64_t* outside);
+                            uint64_t enough, uint64_t* outside);
 
 #endif

@@ -87,9 +87,13 @@ static pvtStatus CheckTriangles(pvtContext* context, pvtBuild* build)
 {
     const pvtMesh* mesh = &build->occluder.mesh;
     const pvtInterior interior = pvtGetInterior(build);
+    pvtCountSurfacePanels(build);
+    // What voxels object to is checked once more where there are panels: one is enough to know.
+    const uint64_t enough = build->stats.surfacePanels > 0 ? 1 : UINT64_MAX;
     uint64_t* outside = pvtAllocate(context, mesh->triangleCount, sizeof *outside);
-    pvtStatus status = outside == NULL ? pvtContext_GetStatus(context)
-                                       : pvtCheckTriangles(context, &interior, mesh, outside);
+    pvtStatus status = outside == NULL
+                           ? pvtContext_GetStatus(context)
+                           : pvtCheckTriangles(context, &interior, mesh, enough, outside);
     for (size_t t = 0; t < mesh->triangleCount && status == PVT_OK; ++t) {
         build->stats.outside += outside[t];
     }

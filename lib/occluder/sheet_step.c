@@ -224,13 +224,18 @@ static pvtStatus CheckPanels(pvtContext* context, pvtBuild* build, const uint64_
     return status;
 }
 
+void pvtCountSurfacePanels(pvtBuild* build)
+{
+    build->stats.surfacePanels = 0;
+    for (size_t p = 0; p < build->occluder.loops.loopCount; ++p) {
+        build->stats.surfacePanels +=
+            pvtSheetSet_Find(&build->sheets, &build->occluder.planes[p]) != NULL ? 1 : 0;
+    }
+}
+
 pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build, const uint64_t* outside)
 {
     pvtBuildStats* stats = &build->stats;
-    for (size_t p = 0; p < build->occluder.loops.loopCount; ++p) {
-        stats->surfacePanels +=
-            pvtSheetSet_Find(&build->sheets, &build->occluder.planes[p]) != NULL ? 1 : 0;
-    }
     if (stats->surfacePanels == 0) {
         return PVT_OK;
     }

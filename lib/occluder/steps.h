@@ -118,8 +118,10 @@ pvtStatus pvtSheetStepWithoutBand(pvtContext* context, pvtBuild* build);
 bool pvtMayUseSheets(const pvtBuild* build);
 /// Adds chains on the sheets to the candidates.
 pvtStatus pvtAddSheets(pvtContext* context, const pvtCandidateOptions* options, pvtBuild* build);
+/// Polygons that lie on sheets, into the stats.
+void pvtCountSurfacePanels(pvtBuild* build);
 /// Checks what pvtCheckTriangles does not know of, and tells of panels on the surface. `outside` is
-/// what that found.
+/// what that found, more than 0 for triangles that are to be looked at.
 pvtStatus pvtCheckSheets(pvtContext* context, pvtBuild* build, const uint64_t* outside);
 void pvtBuild_Free(pvtContext* context, pvtBuild* build);
 

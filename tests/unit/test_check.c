@@ -2,6 +2,7 @@
 #include "voxel_shapes.h"
 
 #include "base/vector.h"
+#include "occluder/check.h"
 
 #include <paravent/occluder.h>
 
@@ -78,11 +79,49 @@ static void what_reaches_out_by_more_than_the_slack_is_counted(void** state)
     DestroyTestContext(context);
 }
 
+static void counting_ends_where_it_is_enough(void** state)
+{
+    (void)state;
+    enum { TRIANGLES = 200 };
+    pvtContext* context = CreateTestContext(2);
+    pvtBitGrid grid;
+    MakeBlock(context, &grid);
+    pvtRandom random = pvtMakeRandom(7, 7);
+    pvtVec3 positions[3 * TRIANGLES];
+    for (int i = 0; i < 3 * TRIANGLES; ++i) {
+        positions[i] = (pvtVec3){pvtRandom_Unit(&random) * 14 + 4, pvtRandom_Unit(&random) * 14 + 3,
+                                 pvtRandom_Unit(&random) * 14 + 4};
+        positions[i] = pvtAdd(grid.frame.origin, pvtScale(positions[i], grid.frame.voxelSize));
+    }
+    pvtMesh mesh;
+    CHECK_OK(context,
+             pvtCreateMesh(context, positions, 3 * (size_t)TRIANGLES, NULL, TRIANGLES, &mesh));
+    static const uint64_t limits[] = {UINT64_MAX, 1, 5};
+    uint64_t counts[3][TRIANGLES];
+    const pvtInterior interior = {.allowed = &grid};
+    for (int i = 0; i < 3; ++i) {
+        CHECK_OK(context, pvtCheckTriangles(context, &interior, &mesh, limits[i], counts[i]));
+    }
+    int inside = 0, many = 0;
+    for (int t = 0; t < TRIANGLES; ++t) {
+        const uint64_t all = counts[0][t];
+        assert_true(counts[1][t] == (all < 1 ? all : 1));
+        assert_true(counts[2][t] == (all < 5 ? all : 5));
+        inside += all == 0 ? 1 : 0;
+        many += all > 5 ? 1 : 0;
+    }
+    assert_true(inside > 10 && many > 10);
+    pvtMesh_Free(context, &mesh);
+    pvtBitGrid_Free(context, &grid);
+    DestroyTestContext(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_planted_hole_is_found_by_every_plane_through_it),
         cmocka_unit_test(what_reaches_out_by_more_than_the_slack_is_counted),
+        cmocka_unit_test(counting_ends_where_it_is_enough),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
