@@ -130,15 +130,19 @@ static void TransformRow(const uint8_t* columnRow, int size, int16_t* distances)
     }
 }
 
+// Four at a time, read as one word: they were stored as vectors just before.
 static uint64_t SumTable(const int16_t* distances, int count, const uint32_t* table)
 {
-    uint64_t even = 0;
-    uint64_t odd = 0;
-    for (int x = 0; x < count; x += 2) {
-        even += table[distances[x]];
-        odd += table[distances[x + 1]];
+    uint64_t sums[4] = {0};
+    for (int x = 0; x < count; x += 4) {
+        uint64_t four;
+        memcpy(&four, distances + x, sizeof four);
+        sums[0] += table[four & 0xFFFF];
+        sums[1] += table[four >> 16 & 0xFFFF];
+        sums[2] += table[four >> 32 & 0xFFFF];
+        sums[3] += table[four >> 48];
     }
-    return even + odd;
+    return sums[0] + sums[1] + sums[2] + sums[3];
 }
 
 void pvtSumMaskRow(const uint8_t* columnRow, int size, const uint32_t* table, uint64_t sums[2])
