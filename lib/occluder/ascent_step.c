@@ -103,7 +103,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
     const int effort = (int)build->options->effort;
     const int budget = pvtGetAscentBudget(build);
     const double share = pvtGetTimeShare(build);
-    // Along a surface triangles have a long way to where they are needed, for all effort.
+    // Along a surface triangles have a long way to where they are needed, whatever the effort.
     const bool isSurface = build->options->terrain || build->isBand;
     const int least = isSurface ? 1 : 0;
     const pvtViewOptions views = pvtGetViewOptions(build);

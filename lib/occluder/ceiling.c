@@ -45,6 +45,7 @@ typedef struct CeilingTask {
     Block* blocks;      // one more at the end
     size_t blockCount;
     const uint32_t* table;
+    uint8_t* pixels; // of all views' pictures
     double* results; // one a view
 } CeilingTask;
 
@@ -278,8 +279,8 @@ static int ClampToMask(float value, int size)
 typedef struct Picture {
     pvtMaskFrame frame;
     pvtPointProjection projection;
-    float reach[2]; // [px] of a block's points from its middle
-    uint8_t pixels[PVT_MAX_MASK_SIZE * PVT_MAX_MASK_SIZE + 1]; // the last one: beside the mask
+    float reach[2];  // [px] of a block's points from its middle
+    uint8_t* pixels; // one a pixel, and one more for all beside the mask
 } Picture;
 
 // Whether all pixels are set that points of a block may lie in.
@@ -322,6 +323,11 @@ static void SplatBlock(const CeilingTask* task, const Block* block, Picture* pic
     }
 }
 
+static size_t GetPictureSize(const CeilingTask* task)
+{
+    return (size_t)task->size * (size_t)task->size + 1;
+}
+
 static void BeginPicture(const CeilingTask* task, size_t view, Picture* picture)
 {
     static const float MORE = 0.01F; // [px] than rounding could move a point by
@@ -332,7 +338,7 @@ static void BeginPicture(const CeilingTask* task, size_t view, Picture* picture)
         picture->reach[0] += 0.5F * BLOCK * fabsf(picture->projection.right[axis]);
         picture->reach[1] += 0.5F * BLOCK * fabsf(picture->projection.up[axis]);
     }
-    memset(picture->pixels, 0, (size_t)task->size * (size_t)task->size);
+    picture->pixels = task->pixels + view * GetPictureSize(task);
 }
 
 static double MeasurePicture(const CeilingTask* task, const Picture* picture)
@@ -469,7 +475,8 @@ pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* optio
     }
     uint32_t* table = pvtAllocate(context, pvtGetDistanceTableCount(task.size), sizeof *table);
     task.results = pvtAllocate(context, task.views->count, sizeof *task.results);
-    pvtStatus status = table != NULL && task.results != NULL
+    task.pixels = pvtAllocate(context, task.views->count, GetPictureSize(&task));
+    pvtStatus status = table != NULL && task.results != NULL && task.pixels != NULL
                            ? ListPoints(context, grid, cells, splits, &task)
                            : pvtContext_GetStatus(context);
     if (status == PVT_OK) {
@@ -477,6 +484,7 @@ pvtStatus pvtMeasureGrid(pvtContext* context, const pvtMeasureGridOptions* optio
         task.table = table;
         status = SumViews(context, &task, measure);
     }
+    pvtRelease(context, task.pixels);
     pvtRelease(context, task.results);
     pvtRelease(context, table);
     pvtRelease(context, task.blocks);
