@@ -3,8 +3,6 @@
 // glTF does, so that a mesh is the same in each.
 #include "writer.hpp"
 
-#include <cstring>
-
 namespace
 {
 
@@ -86,10 +84,7 @@ class PlyOrder
   private:
     static bool BeginsWithLineEnd(const pvtVec3& position)
     {
-        const float x = static_cast<float>(position.x);
-        std::uint32_t bits;
-        std::memcpy(&bits, &x, sizeof bits);
-        return (bits & 0xff) == '\n';
+        return (pvt::Writer::GetFloatBits(position.x) & 0xff) == '\n';
     }
 
     std::size_t first_ = 0;

@@ -45,12 +45,17 @@ class Writer
             text_.push_back(static_cast<char>(value >> shift & 0xff));
         }
     }
-    void PutFloat(double value)
+    /// As PutFloat writes it, lowest byte first.
+    static std::uint32_t GetFloatBits(double value)
     {
         const float narrow = static_cast<float>(value);
         std::uint32_t bits;
         std::memcpy(&bits, &narrow, sizeof bits);
-        PutU32(bits);
+        return bits;
+    }
+    void PutFloat(double value)
+    {
+        PutU32(GetFloatBits(value));
     }
     void PutByte(std::uint8_t value)
     {

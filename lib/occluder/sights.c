@@ -269,10 +269,9 @@ static void SplatNodes(const Splatter* splatter, pvtSight* sight, size_t begin, 
     }
 }
 
-// Nodes that are small set the pixel of their middle each. It is a byte, since with bits each would
-// wait for the one before, which sets one of the same word.
-static void SplatMiddles(const Splatter* splatter, const pvtSight* sight, size_t begin, size_t end,
-                         uint8_t pixels[SIZE * SIZE + 1])
+// The pixels that the middles of nodes lie in, a byte each.
+static void MarkMiddles(const Splatter* splatter, const pvtSight* sight, size_t begin, size_t end,
+                        uint8_t pixels[SIZE * SIZE + 1])
 {
     const pvtPointProjection projection = MakeProjection(sight);
     int32_t places[PVT_POINT_GROUP];
@@ -285,11 +284,29 @@ static void SplatMiddles(const Splatter* splatter, const pvtSight* sight, size_t
     }
 }
 
-static void PackPixels(const uint8_t pixels[SIZE * SIZE], pvtSightMask* mask)
+static void SplatLargeNodes(const Splatter* splatter, unsigned facing, pvtSight* sight)
 {
+    memset(&sight->goal, 0, sizeof sight->goal);
+    for (unsigned e = 1; e < EXPOSURES; ++e) {
+        if ((e & facing) != 0) {
+            SplatNodes(splatter, sight, splatter->starts[e], splatter->starts[e + 1]);
+        }
+    }
+}
+
+// Nodes that are small set the pixel of their middle each. It is a byte, since with bits each would
+// wait for the one before, which sets one of the same word.
+static void SplatSmallNodes(const Splatter* splatter, unsigned facing, pvtSight* sight)
+{
+    uint8_t pixels[SIZE * SIZE + 1] = {0}; // the last one: beside the mask
+    for (unsigned e = 1; e < EXPOSURES; ++e) {
+        if ((e & facing) != 0) {
+            MarkMiddles(splatter, sight, splatter->starts[e], splatter->starts[e + 1], pixels);
+        }
+    }
     for (size_t y = 0; y < SIZE; ++y) {
         for (size_t half = 0; half < PVT_SIGHT_WORDS; ++half) {
-            mask->words[half][y] = pvtPackWord(pixels + SIZE * y + 64 * half);
+            sight->goal.words[half][y] = pvtPackWord(pixels + SIZE * y + 64 * half);
         }
     }
 }
@@ -315,24 +332,15 @@ static void FillGaps(pvtSightMask* mask)
 // on other sides only are left out.
 static void SplatGoal(const Splatter* splatter, pvtVec3 direction, pvtSight* sight)
 {
-    const bool isSmall = GetReach(splatter, sight) <= 0.5F * WIDENING;
-    uint8_t pixels[SIZE * SIZE + 1] = {0}; // the last one: beside the mask
     unsigned facing = 0;
-    memset(&sight->goal, 0, sizeof sight->goal);
     for (int axis = 0; axis < 3; ++axis) {
         const double along = pvtGetAxis(direction, axis);
         facing |= (along < 0.0 ? 1U : along > 0.0 ? 2U : 0U) << (2 * axis);
     }
-    for (unsigned e = 1; e < EXPOSURES; ++e) {
-        const size_t begin = splatter->starts[e], end = splatter->starts[e + 1];
-        if ((e & facing) != 0 && isSmall) {
-            SplatMiddles(splatter, sight, begin, end, pixels);
-        } else if ((e & facing) != 0) {
-            SplatNodes(splatter, sight, begin, end);
-        }
-    }
-    if (isSmall) {
-        PackPixels(pixels, &sight->goal);
+    if (GetReach(splatter, sight) <= 0.5F * WIDENING) {
+        SplatSmallNodes(splatter, facing, sight);
+    } else {
+        SplatLargeNodes(splatter, facing, sight);
     }
     FillGaps(&sight->goal);
 }
