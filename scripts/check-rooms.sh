@@ -21,7 +21,7 @@ allowed() {
     voxel) echo "base mesh voxel" ;;
     section) echo "base mesh voxel section" ;;
     occlusion) echo "base mesh occlusion" ;;
-    occluder) echo "base mesh voxel section occlusion occluder" ;;
+    occluder) echo "base mesh voxel section occlusion evaluate occluder" ;;
     separate) echo "base mesh voxel section occlusion occluder separate" ;;
     evaluate) echo "base mesh occlusion evaluate" ;;
     ladder) echo "base mesh voxel section occlusion occluder evaluate ladder" ;;

@@ -114,6 +114,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .goal = goal.voxels,
         .goalCells = goal.cells,
         .keepsToGoal = isSurface,
+        .isClose = build->band.isClose,
         .inside = &build->inside,
         .mesh = build->mesh,
         .flat = build->stats.tolerance > 0.0 ? &build->flat.mesh : NULL,

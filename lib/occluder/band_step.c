@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A surface that has no inside and is not flat, a landscape above all: triangles may lie within a
-// band around it, which is as narrow as the budget allows.
+// band around it, which is as narrow as the budget allows. What they hide and the surface does not
+// is measured when they are made: where that is too much they keep closer to its outline, and then
+// the band becomes narrower.
 #include "ceiling.h"
 #include "steps.h"
 
@@ -8,18 +10,25 @@
 #include "voxel/bit_grid.h"
 
 #include <math.h>
+#include <paravent/evaluate.h>
 
-// [vx] How far a band reaches from the touched voxels, at 256 voxels along the longest side.
-static const double REACHES[] = {1.0, 2.0, 4.0, 8.0};
-enum { REACH_COUNT = sizeof REACHES / sizeof *REACHES };
+// [vx] How far a band reaches from the touched voxels, at 256 voxels along the longest side. One
+// that is wide enough is looked for among every other one of them.
+static const double REACHES[] = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
+enum { REACH_COUNT = sizeof REACHES / sizeof *REACHES, REACH_STEP = 2 };
 static const double REACH_RESOLUTION = 256.0;
 enum { MOST_RESOLUTION = 640 }; // along the longest side, for an error that was asked for
 // Of what the touched voxels hide: a mesh that hides less has gaps that they do not show, as leaves
-// and twigs have: 0.1 to 0.5, where landscapes have 0.8 to 0.9.
-static const double WHOLE = 0.75;
+// and twigs have: 0.1 to 0.5, where landscapes have 0.8 to 0.9. A band need not be tried.
+static const double WHOLE = 0.5;
 // Of what a band as a whole hides, at the reaches above: where the touched voxels hide less than
 // this, more than their rim has grown. Between them it goes by the reach.
-static const double RIM_LOSS = 0.05, MOST_LOSS = 0.28;
+static const double RIM_LOSS = 0.15, MOST_LOSS = 0.45;
+// Of uniform quads that triangles hide, the part that the surface has to hide as well.
+static const double LEAST_PRECISION = 0.999;
+// How many times as many as may be seen ask for a band that is narrower by more than one step.
+static const double FAR_OFF = 4.0;
+enum { JUDGE_VIEWS = 128, JUDGE_QUADS = 4000, JUDGE_PIXELS = 512, JUDGE_SEED = 7 };
 // Of what the surface hides: where a selection without refinement hides this part of it, nearly all
 // is hidden in the end; with half of this next to nothing.
 static const double ENOUGH_SHARE = 0.5;
@@ -53,7 +62,7 @@ static bool HasNoInside(const pvtBuild* build)
 
 bool pvtMayUseBand(const pvtBuild* build)
 {
-    return pvtMayUseSheets(build) && HasNoInside(build);
+    return pvtMayUseSheets(build) && !build->band.isOff && HasNoInside(build);
 }
 
 // Lets triangles lie in the touched voxels of `solid` and within `reach` [wu] of them.
@@ -178,7 +187,7 @@ static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* r
     pvtStatus status = PVT_OK;
     *reach = 0.0;
     const int count = build->options->error > 0.0 ? 1 : REACH_COUNT;
-    for (int i = 0; i < count && !IsEnough(&trial) && status == PVT_OK; ++i) {
+    for (int i = 0; i < count && !IsEnough(&trial) && status == PVT_OK; i += REACH_STEP) {
         const double next = GetReach(build, i);
         if (next > *reach) {
             *reach = next;
@@ -190,18 +199,6 @@ static pvtStatus FindReach(pvtContext* context, const pvtBuild* build, double* r
         }
     }
     return status;
-}
-
-static void TellBand(pvtContext* context, const pvtBuild* build, int resolution)
-{
-    const pvtBuildStats* stats = &build->stats;
-    pvtWarnOnce(context,
-                "there is next to nothing inside at %d voxels, and the surface is not flat: "
-                "triangles may stray from it by %.3g (%.3g voxels)%s",
-                resolution, stats->tolerance, stats->tolerance / stats->voxelSize,
-                build->options->error > 0.0
-                    ? ", as the error allows"
-                    : "; --tolerance sets how far, and a larger --budget needs less");
 }
 
 static pvtStatus UseBand(pvtContext* context, pvtBuild* build, double reach)
@@ -250,41 +247,139 @@ static pvtStatus Restart(pvtContext* context, pvtBuild* build, double voxels)
     return status;
 }
 
-static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
+static pvtStatus TakeReach(pvtContext* context, pvtBuild* build, double reach)
 {
-    double reach = 0.0;
-    pvtStatus status = FindReach(context, build, &reach);
-    if (status != PVT_OK || reach == 0.0) {
-        return status;
-    }
+    build->band.reach = reach;
+    build->band.resolution = build->stats.resolution;
     if (build->options->error == 0.0) {
         return UseBand(context, build, reach);
     }
     const double voxels = FindErrorReach(build);
-    return voxels > 0.0 ? Restart(context, build, voxels) : PVT_OK;
+    if (voxels == 0.0) {
+        build->band = (pvtBandPlan){.isOff = true};
+        return PVT_OK;
+    }
+    return Restart(context, build, voxels);
+}
+
+static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
+{
+    Trial trial = {0};
+    double reach = 0.0;
+    pvtStatus status = PVT_OK;
+    if (build->sheetShare >= FLAT_SHARE) {
+        status = TrySheets(context, build, &trial);
+    }
+    if (status == PVT_OK && !IsEnough(&trial)) {
+        status = FindReach(context, build, &reach);
+    }
+    return status == PVT_OK && reach > 0.0 ? TakeReach(context, build, reach) : status;
 }
 
 pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
 {
-    const int resolution = build->stats.resolution;
-    if (!pvtMayUseSheets(build)) {
-        return PVT_OK;
-    }
     pvtStatus status = PVT_OK;
     if (pvtMayUseBand(build)) {
-        Trial trial = {0};
-        status = build->sheetShare >= FLAT_SHARE ? TrySheets(context, build, &trial) : PVT_OK;
-        if (status == PVT_OK && !IsEnough(&trial)) {
-            status = TryBand(context, build);
-        }
+        status = build->band.reach > 0.0 ? TakeReach(context, build, build->band.reach)
+                                         : TryBand(context, build);
+    }
+    // A band is a tolerance, with which there are no sheets.
+    return status == PVT_OK && pvtMayUseSheets(build) ? pvtSheetStepWithoutBand(context, build)
+                                                      : status;
+}
+
+// Of what the triangles hide, the part that the mesh hides as well, from where they are looked at.
+static pvtStatus Score(pvtContext* context, const pvtBuild* build, pvtQuadScore* score)
+{
+    const bool isAround = build->options->views.list == NULL && !build->options->views.aboveOnly;
+    pvtVec3* directions = pvtAllocate(context, build->views.count, sizeof *directions);
+    if (directions == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    for (size_t v = 0; v < build->views.count; ++v) {
+        directions[v] = build->views.views[v].direction;
+    }
+    const pvtEvaluateOptions options = {.views = isAround ? JUDGE_VIEWS : (int)build->views.count,
+                                        .quads = JUDGE_QUADS,
+                                        .pixels = JUDGE_PIXELS,
+                                        .seed = JUDGE_SEED,
+                                        .directions = isAround ? NULL : directions};
+    pvtEvaluation evaluation = {0};
+    const pvtStatus status =
+        pvtEvaluateOccluders(context, &options, build->mesh, &build->occluder.mesh, 1, &evaluation);
+    if (status == PVT_OK) {
+        *score = evaluation.occluders[0].uniform;
+    }
+    pvtEvaluation_Free(context, &evaluation);
+    pvtRelease(context, directions);
+    return status;
+}
+
+// What is left to try: triangles that keep closer to the outline, and then to the surface; false
+// where an error that was asked for says how far they may stray.
+static bool PlanNext(pvtBuild* build, double precision)
+{
+    pvtBandPlan* band = &build->band;
+    ++band->tried;
+    if (!band->isClose) {
+        band->isClose = true;
+        return true;
+    }
+    if (build->ownOptions.error > 0.0) {
+        return false;
+    }
+    int number = REACH_COUNT;
+    while (number > 0 && GetReach(build, number - 1) >= band->reach) {
+        --number;
+    }
+    number -= 1.0 - precision > FAR_OFF * (1.0 - LEAST_PRECISION) ? REACH_STEP : 1;
+    band->isOff = number < 0;
+    band->reach = band->isOff ? 0.0 : GetReach(build, number);
+    return true;
+}
+
+// Whether a deadline leaves as much time as it took so far.
+static bool HasTime(const pvtBuild* build)
+{
+    const pvtEnough enough = pvtGetEnough(build);
+    const double deadline = build->options->deadline;
+    return pvtEnough_FindEnd(&enough) == NULL &&
+           (deadline == 0.0 || pvtGetSeconds() - build->started < 0.5 * deadline);
+}
+
+static void TellBand(pvtContext* context, const pvtBuild* build, double precision)
+{
+    const pvtBuildStats* stats = &build->stats;
+    pvtWarnOnce(context,
+                "there is next to nothing inside at %d voxels, and the surface is not flat: "
+                "triangles may stray from it by %.3g (%.3g voxels)%s; %.2g %% of what they hide "
+                "can be seen",
+                build->band.resolution, stats->tolerance, stats->tolerance / stats->voxelSize,
+                build->options->error > 0.0
+                    ? ", as the error allows"
+                    : ", unless --tolerance sets how far, or less with a larger --budget",
+                100.0 * (1.0 - precision));
+}
+
+pvtStatus pvtJudgeBandStep(pvtContext* context, pvtBuild* build)
+{
+    if (build->band.reach == 0.0) {
+        return PVT_OK;
+    }
+    pvtQuadScore score = {0};
+    pvtStatus status = PVT_OK;
+    if (build->occluder.mesh.triangleCount > 0) {
+        status = Score(context, build, &score);
     }
     if (status != PVT_OK) {
         return status;
     }
-    // A band is a tolerance, with which there are no sheets.
-    if (pvtMayUseSheets(build)) {
-        return pvtSheetStepWithoutBand(context, build);
+    // What is seen from few views is more often too little than too much.
+    const double precision = score.precision + 0.5 * score.precisionError;
+    build->band.wantsAgain = build->isBand && precision < LEAST_PRECISION && HasTime(build) &&
+                             PlanNext(build, precision);
+    if (!build->band.wantsAgain) {
+        TellBand(context, build, score.precision);
     }
-    TellBand(context, build, resolution);
     return PVT_OK;
 }

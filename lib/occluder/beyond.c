@@ -11,15 +11,30 @@ static const float PENALTY = 0.5F; // of a pixel, as a part of what the goal's a
 // spoils many times as many of them as its area would.
 static const double COST = 20.0; // if as much is covered there as the goal has
 
-void pvtFindBeyond(const pvtSightMask* goal, pvtSightMask* beyond)
+// The goal's pixels in the two rows of cells from y on.
+static void FindCells(const pvtSightMask* goal, int y, uint64_t near[HALVES])
+{
+    for (int half = 0; half < HALVES; ++half) {
+        near[half] = goal->words[half][y] | goal->words[half][y + 1];
+    }
+}
+
+// And those around them.
+static void FindCellsAround(const pvtSightMask* goal, int y, uint64_t near[HALVES])
+{
+    near[0] = near[1] = 0;
+    for (int row = y > 0 ? y - 1 : 0; row < y + 3 && row < SIZE; ++row) {
+        const uint64_t low = goal->words[0][row], high = goal->words[1][row];
+        near[0] |= low | low << 1 | low >> 1 | high << 63;
+        near[1] |= high | high << 1 | high >> 1 | low >> 63;
+    }
+}
+
+void pvtFindBeyond(const pvtSightMask* goal, bool isClose, pvtSightMask* beyond)
 {
     for (int y = 0; y < SIZE; y += 2) {
-        uint64_t near[HALVES] = {0};
-        for (int row = y > 0 ? y - 1 : 0; row < y + 3 && row < SIZE; ++row) {
-            const uint64_t low = goal->words[0][row], high = goal->words[1][row];
-            near[0] |= low | low << 1 | low >> 1 | high << 63;
-            near[1] |= high | high << 1 | high >> 1 | low >> 63;
-        }
+        uint64_t near[HALVES];
+        (isClose ? FindCells : FindCellsAround)(goal, y, near);
         for (int half = 0; half < HALVES; ++half) {
             const uint64_t cells = ~(near[half] | near[half] >> 1) & EVEN;
             beyond->words[half][y] = beyond->words[half][y + 1] = cells | cells << 1;

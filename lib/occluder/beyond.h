@@ -5,9 +5,9 @@
 
 #include "sight_mask.h"
 
-/// Pixels of cells that the goal has no pixel of, nor beside: a node that is splatted may reach a
-/// pixel too far.
-void pvtFindBeyond(const pvtSightMask* goal, pvtSightMask* beyond);
+/// Pixels of cells that the goal has no pixel of, nor beside, unless it `isClose`: a node that is
+/// splatted may reach a pixel too far.
+void pvtFindBeyond(const pvtSightMask* goal, bool isClose, pvtSightMask* beyond);
 
 /// What is covered there costs, as a share of what all rectangles of a sight are worth.
 double pvtGetCostBeyond(const pvtSightMask* goal, const pvtSightMask* beyond,

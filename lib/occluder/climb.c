@@ -101,6 +101,7 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
                                  .softness = ascent->softness,
                                  .inset = PVT_ASCENT_INSET,
                                  .keepsToGoal = ascent->options->keepsToGoal,
+                                 .isClose = ascent->options->isClose,
                                  .wantsEdges = wantsEdges};
     pvtPullCorners(context, &pull, &ascent->puller);
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
@@ -137,6 +138,7 @@ static double Judge(pvtContext* context, pvtAscent* ascent)
                                      .softness = JUDGE_SOFTNESS,
                                      .inset = PVT_ASCENT_INSET,
                                      .keepsToGoal = ascent->options->keepsToGoal,
+                                     .isClose = ascent->options->isClose,
                                      .wantsNoPulls = true};
         pvtPullCorners(context, &pull, &ascent->puller);
         sum += ascent->puller.share * pull.count;

@@ -242,10 +242,10 @@ static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2], con
 }
 
 // Pixels beyond the goal are as missing ones that are worth less than nothing.
-static void LoseBeyond(const pvtSightMask* goal, pvtSightMask* missing, Lack* lack)
+static void LoseBeyond(const pvtSightMask* goal, bool isClose, pvtSightMask* missing, Lack* lack)
 {
     pvtSightMask beyond;
-    pvtFindBeyond(goal, &beyond);
+    pvtFindBeyond(goal, isClose, &beyond);
     pvtPunishBeyond(&beyond, lack->values);
     for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
         for (int y = 0; y < SIZE; ++y) {
@@ -262,7 +262,7 @@ static double SumWorths(const pvtPuller* puller, const pvtSight* sight, const pv
         return worth;
     }
     pvtSightMask beyond;
-    pvtFindBeyond(&sight->goal, &beyond);
+    pvtFindBeyond(&sight->goal, puller->options.isClose, &beyond);
     return worth - (double)sight->quadCount * pvtGetCostBeyond(&sight->goal, &beyond, covered);
 }
 
@@ -288,7 +288,7 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
         } else {
             puller->worth[b] = WeighCells(puller, sight, &missing, lack.values);
             if (puller->options.keepsToGoal) {
-                LoseBeyond(&sight->goal, &missing, &lack);
+                LoseBeyond(&sight->goal, puller->options.isClose, &missing, &lack);
             }
             PadMissing(&missing, &lack);
             PullEdges(puller, b, places, &lack);

@@ -19,6 +19,7 @@ typedef struct pvtPullOptions {
     float softness; ///< [px]
     float inset; ///< [px] that open edges are drawn short of, so that no gap is too narrow to see
     bool keepsToGoal; ///< what is covered beyond the goal counts against it
+    bool isClose;     ///< and what is beside it as well
     bool wantsEdges;
     bool wantsNoPulls; ///< `share` alone
 } pvtPullOptions;

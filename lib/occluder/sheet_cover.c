@@ -19,9 +19,6 @@ enum { MAX_POINTS = 12, MAX_PIECES = 48, ROWS_A_CHECK = 1024 };
 // triangles that are rounded, nowhere wider than 1/64 of it.
 static const double GAP = 1.0 / 8192.0;
 
-// [vx²] What a triangle may have uncovered: less than what the check after the build looks at.
-static const double CRACK = 4e-6;
-
 // [cells] A point this close to an edge counts as inside, where only cells that fail are sought.
 static const double NEAR = 0.01;
 
@@ -502,7 +499,7 @@ static bool MayCover(const pvtPlaneShapes* shapes, const Shape* triangle)
     return true;
 }
 
-bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle[3])
+bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle[3], double* open)
 {
     const double unit = 1 << PVT_POINT_BITS;
     Shape whole = {.count = 3};
@@ -537,5 +534,9 @@ bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle
     for (int i = 0; i < left; ++i) {
         rest += GetArea(buffers[now][i].points, buffers[now][i].count);
     }
-    return rest <= fmin(fabs(area) / 64.0, CRACK);
+    if (rest > fmin(fabs(area) / 64.0, *open)) {
+        return false;
+    }
+    *open -= rest;
+    return true;
 }

@@ -22,8 +22,8 @@ pvtStatus pvtCollectPlaneShapes(pvtContext* context, const pvtSheetSoup* soup,
                                 const pvtPlane* plane, double distance, pvtPlaneShapes* shapes);
 void pvtPlaneShapes_Free(pvtContext* context, pvtPlaneShapes* shapes);
 
-/// Whether the shapes cover a triangle of the plane, but for cracks: 1/64 of its area, and 4e-6
-/// vx².
-bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle[3]);
+/// Whether the shapes cover a triangle of the plane, but for cracks: 1/64 of its area, and as much
+/// as is left of what may stay open [vx²], from which they are taken.
+bool pvtPlaneShapes_Cover(const pvtPlaneShapes* shapes, const pvtPoint2 triangle[3], double* open);
 
 #endif

@@ -14,6 +14,10 @@
 
 enum { FINER = 4, ROUNDS = 4, MAX_CELLS = 8192, MAX_TRIANGLES = 50000, MAX_SHAPES = 4096 };
 
+// [vx²] What may stay open around a corner in all rounds, beyond the cells: less than the check
+// after the build looks at where it is in one place.
+static const double CRACKS = 6e-6;
+
 typedef struct EdgeTask {
     pvtContext* context;
     const pvtSheetSet* sheets;
@@ -30,12 +34,23 @@ typedef struct Room {
     const pvtBitmap* cells; // may be null
     int cellsPerVoxel;
     const pvtPlaneShapes* shapes;
+    double* open; // [vx²] what may stay uncovered by shapes
 } Room;
 
-static bool IsWithin(const Room* room, const pvtPoint2 triangle[3])
+static bool AreWithin(const Room* room, const pvtPoint2 (*triangles)[3], size_t count)
 {
-    return room->cells != NULL ? pvtIsPolygonWithin(room->cells, room->cellsPerVoxel, triangle, 3)
-                               : pvtPlaneShapes_Cover(room->shapes, triangle);
+    double open = room->cells == NULL ? *room->open : 0.0;
+    for (size_t t = 0; t < count; ++t) {
+        if (room->cells != NULL
+                ? !pvtIsPolygonWithin(room->cells, room->cellsPerVoxel, triangles[t], 3)
+                : !pvtPlaneShapes_Cover(room->shapes, triangles[t], &open)) {
+            return false;
+        }
+    }
+    if (room->cells == NULL) {
+        *room->open = open;
+    }
+    return true;
 }
 
 // Whether what a corner sweeps is wholly outside of the polygon where it is added, or inside of it
@@ -65,7 +80,7 @@ static bool MayMove(const Room* room, pvtPoint2* points, size_t count, size_t in
     points[index] = there;
     const bool isFree = pvtIsPointFree(points, count, index);
     points[index] = here;
-    return isFree && IsWithin(room, swept[0]) && IsWithin(room, swept[1]);
+    return isFree && AreWithin(room, swept, 2);
 }
 
 // `step` further along the edge from `before` to `here`.
@@ -104,11 +119,19 @@ static void MoveCorner(const Room* room, int32_t step, pvtPoint2* points, size_t
     }
 }
 
+static void OpenCracks(const Room* room)
+{
+    if (room->open != NULL) {
+        *room->open = CRACKS / ROUNDS;
+    }
+}
+
 // Each corner, in steps that halve from the first to the second, in point units.
 static void MoveCorners(const Room* room, const int32_t steps[2], pvtPoint2* points, size_t count)
 {
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < count; ++i) {
+            OpenCracks(room);
             for (int32_t step = steps[0]; step >= steps[1]; step /= 2) {
                 MoveCorner(room, step, points, count, i);
             }
@@ -138,7 +161,7 @@ static bool FillNotch(const Room* room, pvtPoint2* points, size_t count, size_t 
     const pvtPoint2 here = points[i];
     const pvtPoint2 notch[3] = {points[(i + count - 1) % count], points[(i + 1) % count], here};
     if (pvtGetLoopArea2(notch, 3) < 0 || IsDouble(points, count, i) ||
-        !IsSweepClear(points, count, notch) || !IsWithin(room, notch)) {
+        !IsSweepClear(points, count, notch) || !AreWithin(room, &notch, 1)) {
         return false;
     }
     RemovePoint(points, count, i);
@@ -156,6 +179,7 @@ static bool FillNotch(const Room* room, pvtPoint2* points, size_t count, size_t 
 static size_t FillNotches(const Room* room, pvtPoint2* points, size_t count)
 {
     for (size_t i = 0; i < count && count > 3;) {
+        OpenCracks(room);
         const bool isSpike =
             count > 4 && pvtIsSamePoint(points[(i + count - 1) % count], points[(i + 1) % count]);
         if (isSpike) {
@@ -228,11 +252,12 @@ static pvtStatus GrowPolygons(const EdgeTask* task, const pvtSheet* sheet, const
     pvtStatus status =
         pvtCollectPlaneShapes(task->context, task->soup, &sheet->plane, task->deviation, &shapes);
     const Room coarse = {.cells = cells, .cellsPerVoxel = FINER * task->sheets->cellsPerVoxel};
-    const Room exact = {.shapes = &shapes};
     for (size_t p = 0; p < loops->loopCount && status == PVT_OK; ++p) {
         if (pvtIsCancelled(task->context)) {
             status = PVT_CANCELLED;
         } else if (task->on[p] == sheet) {
+            double open = 0.0;
+            const Room exact = {.shapes = &shapes, .open = &open};
             status = GrowPolygon(task->context, &coarse, &exact, loops->points + loops->starts[p],
                                  &task->counts[p]);
         }

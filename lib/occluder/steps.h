@@ -9,6 +9,17 @@
 
 enum { PVT_MOST_STARTS = 4 }; ///< of an ascent
 
+/// How triangles are to lie around a surface that has no inside and is not flat. What that gives is
+/// judged when it is made; should too much of what it hides be seen, the build begins again.
+typedef struct pvtBandPlan {
+    int tried;       ///< bands that were not good enough
+    double reach;    ///< [wu] from the touched voxels; 0 before it is known
+    bool isClose;    ///< what is beside the surface's outline is not free, either
+    bool isOff;      ///< none is good enough
+    int resolution;  ///< that nothing is inside at
+    bool wantsAgain; ///< another one is to be made
+} pvtBandPlan;
+
 /// What a build holds on its way; one place to free it.
 typedef struct pvtBuild {
     const pvtBuildOptions* options;
@@ -34,6 +45,7 @@ typedef struct pvtBuild {
     double sheetShare;   ///< of the surface without an inside behind it, that the best sheets take
     pvtBuildOptions ownOptions; ///< what `options` are where a band replaces them
     bool isBand;                ///< whether triangles lie within a band around the surface instead
+    pvtBandPlan band;
     pvtBitGrid hiding; ///< the allowed voxels and those that the sheets pass; may have no words
     pvtCandidateSet candidates;
     pvtViewSet views;
@@ -56,6 +68,7 @@ pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtAscendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtJudgeBandStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
 
 /// From the voxels' size, the tolerance and the holes that close.

@@ -176,20 +176,22 @@ static void cells_away_from_the_goal_are_beyond_it(void** state)
         const size_t x = pvtRandom_Below(&random, PVT_SIGHT_SIZE);
         pvtSetBit(&goals[1].words[x / 64][pvtRandom_Below(&random, PVT_SIGHT_SIZE)], x % 64);
     }
-    for (int g = 0; g < 2; ++g) {
+    for (int g = 0; g < 4; ++g) {
+        const pvtSightMask* goal = &goals[g / 2];
+        const int ring = g % 2 == 0 ? 1 : 0;
         pvtSightMask beyond;
-        pvtFindBeyond(&goals[g], &beyond);
+        pvtFindBeyond(goal, ring == 0, &beyond);
         int all = 0, out = 0;
         for (int i = 0; i < PVT_SIGHT_CELLS * PVT_SIGHT_CELLS; ++i) {
             const int x = 2 * (i % PVT_SIGHT_CELLS), y = 2 * (i / PVT_SIGHT_CELLS);
-            const bool isBeyond = CountAround(&goals[g], x - 1, y - 1, 4) == 0;
+            const bool isBeyond = CountAround(goal, x - ring, y - ring, 2 + 2 * ring) == 0;
             assert_int_equal(CountAround(&beyond, x, y, 2), isBeyond ? 4 : 0);
             out += isBeyond ? 4 : 0;
-            all += CountAround(&goals[g], x, y, 2);
+            all += CountAround(goal, x, y, 2);
         }
         assert_true(out > 0 && all > 0);
-        CHECK_NEAR(pvtGetCostBeyond(&goals[g], &beyond, &beyond), 20.0 * out / all, 1e-9);
-        assert_true(pvtGetCostBeyond(&goals[g], &beyond, &goals[g]) == 0.0);
+        CHECK_NEAR(pvtGetCostBeyond(goal, &beyond, &beyond), 20.0 * out / all, 1e-9);
+        assert_true(pvtGetCostBeyond(goal, &beyond, goal) == 0.0);
     }
     FreeLesson(context, &lesson);
     DestroyTestContext(context);

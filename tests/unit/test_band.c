@@ -261,6 +261,71 @@ static void gaps_stay_open(void** state)
     DestroyTestContext(context);
 }
 
+// Two opposite quarters of a sphere, of which every so many-th face is left out (0: none).
+static void MakeQuarters(pvtContext* context, int gaps, pvtMesh* mesh)
+{
+    enum { STEPS = 24, SIDE = STEPS + 1, CORNERS = 2 * SIDE * SIDE };
+    pvtVec3 positions[CORNERS];
+    uint32_t indices[12 * STEPS * STEPS];
+    size_t count = 0;
+    int face = 0;
+    for (uint32_t i = 0; i < CORNERS; ++i) {
+        const double half = i < CORNERS / 2 ? 1.0 : -1.0;
+        const double around = M_PI * (i % SIDE) / STEPS;
+        const double up = 0.5 * M_PI * (i / SIDE % SIDE) / STEPS;
+        positions[i] =
+            (pvtVec3){half * cos(around) * cos(up), half * sin(up), half * sin(around) * cos(up)};
+        if (i % SIDE < STEPS && i / SIDE % SIDE < STEPS && (gaps == 0 || ++face % gaps > 0)) {
+            AddQuad(indices, &count, (uint32_t[4]){i, i + 1, i + SIDE + 1, i + SIDE});
+        }
+    }
+    CHECK_OK(context, pvtCreateMesh(context, positions, CORNERS, indices, count / 3, mesh));
+}
+
+static void MakeWholeQuarters(pvtContext* context, pvtMesh* mesh)
+{
+    MakeQuarters(context, 0, mesh);
+}
+
+static void MakeQuartersWithGaps(pvtContext* context, pvtMesh* mesh)
+{
+    MakeQuarters(context, 61, mesh);
+}
+
+// Where eight voxels beside the outline were free, 0.2 % of what is hidden could be seen.
+static void a_curved_shell_is_kept_to_its_outline(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    const pvtBuildOptions options = GetQuickOptions();
+    Outcome outcome = Build(context, MakeWholeQuarters, &options);
+    assert_true(outcome.stats.outside == 0);
+    assert_true(outcome.stats.tolerance > 0.0);
+    assert_true(GetFarthest(&outcome.occluder.mesh, &outcome.mesh) <= outcome.stats.errorBound);
+    const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 256);
+    assert_true(score.recall > 0.9);
+    assert_true(score.precision > 0.999);
+    FreeOutcome(context, &outcome);
+    DestroyTestContext(context);
+}
+
+// A band of four voxels, which would be wide enough to hide nearly all, would close gaps.
+static void a_band_is_too_narrow_to_close_gaps(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(2);
+    const pvtBuildOptions options = GetQuickOptions();
+    Outcome outcome = Build(context, MakeQuartersWithGaps, &options);
+    assert_true(outcome.stats.outside == 0);
+    assert_true(outcome.stats.tolerance > 0.0);
+    assert_true(outcome.stats.tolerance < 3.0 * outcome.stats.voxelSize);
+    assert_true(GetFarthest(&outcome.occluder.mesh, &outcome.mesh) <= outcome.stats.errorBound);
+    const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 256);
+    assert_true(score.precision > 0.9985);
+    FreeOutcome(context, &outcome);
+    DestroyTestContext(context);
+}
+
 static void the_same_comes_out_on_any_number_of_threads(void** state)
 {
     (void)state;
@@ -292,6 +357,8 @@ int main(void)
         cmocka_unit_test(a_band_keeps_within_the_error_that_is_asked_for),
         cmocka_unit_test(flat_walls_need_no_band),
         cmocka_unit_test(gaps_stay_open),
+        cmocka_unit_test(a_curved_shell_is_kept_to_its_outline),
+        cmocka_unit_test(a_band_is_too_narrow_to_close_gaps),
         cmocka_unit_test(the_same_comes_out_on_any_number_of_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
