@@ -13,6 +13,7 @@ typedef struct pvtAscentOptions {
     const pvtCellGrid* goalCells; ///< parts of other voxels; borrowed; may be null
     bool keepsToGoal; ///< the inside reaches farther, but there is nothing that may be hidden
     bool isClose;     ///< nor beside the goal: else a pixel of what a sight shows is free
+    float penalty;    ///< of a pixel there, as a part of what the goal's are worth on average
     const pvtInsideTest* inside;
     const pvtMesh* mesh;       ///< what the goal is of, another start; borrowed; may be null
     const pvtMesh* flat;       ///< an occluder for this budget, another; borrowed; may be null

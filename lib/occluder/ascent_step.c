@@ -10,6 +10,9 @@
 // which is looked at in nodes of four voxels and more (ascent.c), and cells would take most memory.
 enum { FINEST_GOAL = 512 };
 
+// Of a pixel beyond the goal, as a part of what the goal's are worth on average.
+static const float PENALTY = 0.5F, HARD_PENALTY = 5.0F;
+
 bool pvtMayAscend(const pvtBuild* build)
 {
     const bool hasRoom = build->stats.tolerance > 0.0 || build->solid.strictCount > 0;
@@ -115,6 +118,7 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
         .goalCells = goal.cells,
         .keepsToGoal = isSurface,
         .isClose = build->band.isClose,
+        .penalty = build->band.isHard ? HARD_PENALTY : PENALTY,
         .inside = &build->inside,
         .mesh = build->mesh,
         .flat = build->stats.tolerance > 0.0 ? &build->flat.mesh : NULL,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A surface that has no inside and is not flat, a landscape above all: triangles may lie within a
-// band around it, which is as narrow as the budget allows. What they hide and the surface does not
-// is measured when they are made: where that is too much they keep closer to its outline, and then
-// the band becomes narrower.
+// A surface that has no inside, or little, and is not flat, a landscape above all: triangles may
+// lie within a band around it, which is as narrow as the budget allows. What they hide and the
+// surface does not is measured when they are made: where that is too much they keep closer to its
+// outline, and then the band becomes narrower.
 #include "ceiling.h"
 #include "steps.h"
 
@@ -26,16 +26,29 @@ static const double WHOLE = 0.5;
 static const double RIM_LOSS = 0.15, MOST_LOSS = 0.45;
 // Of uniform quads that triangles hide, the part that the surface has to hide as well.
 static const double LEAST_PRECISION = 0.999;
-// How many times as many as may be seen ask for a band that is narrower by more than one step.
+// More than so many times as much as may be seen asks for more than one step at once.
 static const double FAR_OFF = 4.0;
-enum { JUDGE_VIEWS = 128, JUDGE_QUADS = 4000, JUDGE_PIXELS = 512, JUDGE_SEED = 7 };
+enum {
+    TRIAL_VIEWS = 32,
+    JUDGE_VIEWS = 128,
+    JUDGE_QUADS = 4000,
+    JUDGE_PIXELS = 512,
+    JUDGE_SEED = 7
+};
 // Of what the surface hides: where a selection without refinement hides this part of it, nearly all
 // is hidden in the end; with half of this next to nothing.
 static const double ENOUGH_SHARE = 0.5;
+// Where there is an inside behind a part of the surface, a strict occluder of this recall will do.
+static const double ENOUGH_RECALL = 0.25;
+// The same of sheets: with less, some farther from the surface are tried, and taken where they hide
+// so much more.
+static const double NEARLY_ALL = 0.9, MUCH_MORE = 1.1;
 // Of the surface: where sheets take less it is not flat, and a selection need not be tried.
 static const double FLAT_SHARE = 0.5;
 // Of the touched voxels: an inside of fewer is none.
 static const double LEAST_INSIDE = 0.01;
+// Of the surface: where as much has no inside behind it, a band may help although there is one.
+static const double BARE_SHARE = 0.3;
 
 // What is known of triangles within some voxels before any are made with care. [wu³] measures.
 typedef struct Trial {
@@ -44,6 +57,7 @@ typedef struct Trial {
     double mesh;
     double touched; // of the touched voxels
     double allowed; // of all voxels that triangles may lie in
+    double recall;  // of the selection, where there is an inside; else 0
 } Trial;
 
 static double GetReach(const pvtBuild* build, int number)
@@ -60,9 +74,15 @@ static bool HasNoInside(const pvtBuild* build)
            (double)solid->strictCount < LEAST_INSIDE * (double)solid->surfaceCount;
 }
 
+// A buoy's hull is open below, its lamp is not.
+static bool IsBare(const pvtBuild* build)
+{
+    return build->band.isBare || build->sheets.bare > BARE_SHARE * build->sheets.area;
+}
+
 bool pvtMayUseBand(const pvtBuild* build)
 {
-    return pvtMayUseSheets(build) && !build->band.isOff && HasNoInside(build);
+    return pvtMayUseSheets(build) && !build->band.isOff && (HasNoInside(build) || IsBare(build));
 }
 
 // Lets triangles lie in the touched voxels of `solid` and within `reach` [wu] of them.
@@ -89,20 +109,55 @@ static pvtStatus Select(pvtContext* context, pvtBuild* build)
     return status == PVT_OK ? pvtSelectStep(context, build) : status;
 }
 
+// What `occluder` hides of what the mesh does, and besides, from where it is looked at: from so
+// many directions where that is all around.
+static pvtStatus Score(pvtContext* context, const pvtBuild* build, const pvtMesh* occluder,
+                       int views, pvtQuadScore* score)
+{
+    const bool isAround = build->options->views.list == NULL && !build->options->views.aboveOnly;
+    pvtVec3* directions = pvtAllocate(context, build->views.count, sizeof *directions);
+    if (directions == NULL) {
+        return pvtContext_GetStatus(context);
+    }
+    for (size_t v = 0; v < build->views.count; ++v) {
+        directions[v] = build->views.views[v].direction;
+    }
+    const pvtEvaluateOptions options = {.views = isAround ? views : (int)build->views.count,
+                                        .quads = JUDGE_QUADS,
+                                        .pixels = JUDGE_PIXELS,
+                                        .seed = JUDGE_SEED,
+                                        .directions = isAround ? NULL : directions};
+    pvtEvaluation evaluation = {0};
+    const pvtStatus status =
+        pvtEvaluateOccluders(context, &options, build->mesh, occluder, 1, &evaluation);
+    if (status == PVT_OK) {
+        *score = evaluation.occluders[0].uniform;
+    }
+    pvtEvaluation_Free(context, &evaluation);
+    pvtRelease(context, directions);
+    return status;
+}
+
+static const pvtMesh* GetSelected(const pvtBuild* build)
+{
+    return build->flat.loops.loopCount > 0 ? &build->flat.mesh : &build->occluder.mesh;
+}
+
+// The mesh's own measure stays, where it is known.
 static pvtStatus MeasureSelection(pvtContext* context, pvtBuild* build, Trial* trial)
 {
-    *trial = (Trial){0};
+    *trial = (Trial){.mesh = trial->mesh};
     pvtStatus status = Select(context, build);
     if (status == PVT_NOTHING_INSIDE) {
         return PVT_OK;
     }
-    const pvtOccluder* cut = build->flat.loops.loopCount > 0 ? &build->flat : &build->occluder;
     trial->hasRoom = true;
     if (status == PVT_OK) {
-        status = pvtMeasureTriangles(context, build, &cut->mesh, &trial->selected);
+        status = pvtMeasureTriangles(context, build, GetSelected(build), &trial->selected);
     }
-    return status == PVT_OK ? pvtMeasureTriangles(context, build, build->mesh, &trial->mesh)
-                            : status;
+    return status == PVT_OK && trial->mesh == 0.0
+               ? pvtMeasureTriangles(context, build, build->mesh, &trial->mesh)
+               : status;
 }
 
 // What was selected in the build tells its views.
@@ -116,9 +171,15 @@ static pvtStatus MeasureVoxels(pvtContext* context, const pvtBitGrid* surface,
                : status;
 }
 
+// Of what the mesh hides.
+static double GetHidden(const Trial* trial)
+{
+    return trial->mesh > 0.0 ? trial->selected / trial->mesh : 0.0;
+}
+
 static bool IsEnough(const Trial* trial)
 {
-    return trial->mesh > 0.0 && trial->selected >= ENOUGH_SHARE * trial->mesh;
+    return GetHidden(trial) >= ENOUGH_SHARE || trial->recall >= ENOUGH_RECALL;
 }
 
 static pvtBuildOptions GetTrialOptions(const pvtBuild* build)
@@ -142,7 +203,12 @@ static pvtStatus TrySheets(pvtContext* context, const pvtBuild* build, Trial* tr
                         .volume = build->volume,
                         .bounds = build->bounds,
                         .sheets = build->sheets};
-    const pvtStatus status = MeasureSelection(context, &scratch, trial);
+    pvtStatus status = MeasureSelection(context, &scratch, trial);
+    if (status == PVT_OK && trial->hasRoom && !HasNoInside(build)) {
+        pvtQuadScore score = {0};
+        status = Score(context, &scratch, GetSelected(&scratch), TRIAL_VIEWS, &score);
+        trial->recall = score.recall;
+    }
     // These stay the build's.
     scratch.allowed = (pvtBitGrid){0};
     scratch.cells = (pvtCellGrid){0};
@@ -242,7 +308,7 @@ static pvtStatus Restart(pvtContext* context, pvtBuild* build, double voxels)
         status = pvtFillStep(context, build);
     }
     // Smaller voxels may have found one.
-    build->isBand = status == PVT_OK && HasNoInside(build);
+    build->isBand = status == PVT_OK && (HasNoInside(build) || build->band.isBare);
     pvtBeginStage(context, "band");
     return status;
 }
@@ -251,6 +317,7 @@ static pvtStatus TakeReach(pvtContext* context, pvtBuild* build, double reach)
 {
     build->band.reach = reach;
     build->band.resolution = build->stats.resolution;
+    build->band.isBare = !HasNoInside(build);
     if (build->options->error == 0.0) {
         return UseBand(context, build, reach);
     }
@@ -262,15 +329,62 @@ static pvtStatus TakeReach(pvtContext* context, pvtBuild* build, double reach)
     return Restart(context, build, voxels);
 }
 
-static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
+// Sheets a little farther from the surface are fewer and larger, and may hide more.
+static pvtStatus TryFartherSheets(pvtContext* context, pvtBuild* build, Trial* trial)
+{
+    pvtSheetSet sheets = build->sheets;
+    pvtBitGrid hiding = build->hiding;
+    const pvtBox3 bounds = build->bounds;
+    const double deviation = build->deviation, share = build->sheetShare;
+    build->sheets = (pvtSheetSet){0};
+    build->hiding = (pvtBitGrid){0};
+    Trial farther = {.mesh = trial->mesh};
+    pvtStatus status = pvtUseFartherSheets(context, build);
+    if (status == PVT_OK) {
+        status = TrySheets(context, build, &farther);
+    }
+    if (GetHidden(&farther) > MUCH_MORE * GetHidden(trial)) {
+        *trial = farther;
+    } else {
+        const pvtSheetSet others = build->sheets;
+        const pvtBitGrid otherHiding = build->hiding;
+        build->sheets = sheets;
+        build->hiding = hiding;
+        build->bounds = bounds;
+        build->deviation = deviation;
+        build->sheetShare = share;
+        sheets = others;
+        hiding = otherHiding;
+    }
+    pvtSheetSet_Free(context, &sheets);
+    pvtBitGrid_Free(context, &hiding);
+    return status;
+}
+
+// The sheets that hide most, where the surface is flat enough for any, and whether they hide
+// enough: close to it half of what the mesh does, farther off nearly all.
+static pvtStatus ChooseSheets(pvtContext* context, pvtBuild* build, bool* areEnough)
 {
     Trial trial = {0};
-    double reach = 0.0;
     pvtStatus status = PVT_OK;
-    if (build->sheetShare >= FLAT_SHARE) {
+    if (build->sheetShare >= FLAT_SHARE || !HasNoInside(build)) {
         status = TrySheets(context, build, &trial);
     }
-    if (status == PVT_OK && !IsEnough(&trial)) {
+    *areEnough = IsEnough(&trial);
+    while (status == PVT_OK && trial.hasRoom && GetHidden(&trial) < NEARLY_ALL &&
+           pvtMayUseFartherSheets(build)) {
+        status = TryFartherSheets(context, build, &trial);
+        *areEnough = *areEnough || GetHidden(&trial) >= NEARLY_ALL;
+    }
+    return status;
+}
+
+static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
+{
+    bool areEnough = false;
+    double reach = 0.0;
+    pvtStatus status = ChooseSheets(context, build, &areEnough);
+    if (status == PVT_OK && pvtMayUseBand(build) && !areEnough) {
         status = FindReach(context, build, &reach);
     }
     return status == PVT_OK && reach > 0.0 ? TakeReach(context, build, reach) : status;
@@ -279,7 +393,7 @@ static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
 pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
 {
     pvtStatus status = PVT_OK;
-    if (pvtMayUseBand(build)) {
+    if (pvtMayUseSheets(build) && (HasNoInside(build) || IsBare(build))) {
         status = build->band.reach > 0.0 ? TakeReach(context, build, build->band.reach)
                                          : TryBand(context, build);
     }
@@ -288,31 +402,17 @@ pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
                                                       : status;
 }
 
-// Of what the triangles hide, the part that the mesh hides as well, from where they are looked at.
-static pvtStatus Score(pvtContext* context, const pvtBuild* build, pvtQuadScore* score)
+// The next one that is narrower.
+static void PlanNarrower(pvtBuild* build, bool isFarOff)
 {
-    const bool isAround = build->options->views.list == NULL && !build->options->views.aboveOnly;
-    pvtVec3* directions = pvtAllocate(context, build->views.count, sizeof *directions);
-    if (directions == NULL) {
-        return pvtContext_GetStatus(context);
+    pvtBandPlan* band = &build->band;
+    int number = REACH_COUNT;
+    while (number > 0 && GetReach(build, number - 1) >= band->reach) {
+        --number;
     }
-    for (size_t v = 0; v < build->views.count; ++v) {
-        directions[v] = build->views.views[v].direction;
-    }
-    const pvtEvaluateOptions options = {.views = isAround ? JUDGE_VIEWS : (int)build->views.count,
-                                        .quads = JUDGE_QUADS,
-                                        .pixels = JUDGE_PIXELS,
-                                        .seed = JUDGE_SEED,
-                                        .directions = isAround ? NULL : directions};
-    pvtEvaluation evaluation = {0};
-    const pvtStatus status =
-        pvtEvaluateOccluders(context, &options, build->mesh, &build->occluder.mesh, 1, &evaluation);
-    if (status == PVT_OK) {
-        *score = evaluation.occluders[0].uniform;
-    }
-    pvtEvaluation_Free(context, &evaluation);
-    pvtRelease(context, directions);
-    return status;
+    number -= isFarOff ? REACH_STEP : 1;
+    band->isOff = number < 0;
+    band->reach = band->isOff ? 0.0 : GetReach(build, number);
 }
 
 // What is left to try: triangles that keep closer to the outline, and then to the surface; false
@@ -320,21 +420,20 @@ static pvtStatus Score(pvtContext* context, const pvtBuild* build, pvtQuadScore*
 static bool PlanNext(pvtBuild* build, double precision)
 {
     pvtBandPlan* band = &build->band;
+    const bool isFarOff = 1.0 - precision > FAR_OFF * (1.0 - LEAST_PRECISION);
+    const bool hasError = build->ownOptions.error > 0.0;
     ++band->tried;
     if (!band->isClose) {
         band->isClose = true;
-        return true;
-    }
-    if (build->ownOptions.error > 0.0) {
+        band->isHard = isFarOff;
+    } else if (hasError && band->isHard) {
         return false;
+    } else {
+        band->isHard = true;
+        if (!hasError) {
+            PlanNarrower(build, isFarOff);
+        }
     }
-    int number = REACH_COUNT;
-    while (number > 0 && GetReach(build, number - 1) >= band->reach) {
-        --number;
-    }
-    number -= 1.0 - precision > FAR_OFF * (1.0 - LEAST_PRECISION) ? REACH_STEP : 1;
-    band->isOff = number < 0;
-    band->reach = band->isOff ? 0.0 : GetReach(build, number);
     return true;
 }
 
@@ -351,9 +450,10 @@ static void TellBand(pvtContext* context, const pvtBuild* build, double precisio
 {
     const pvtBuildStats* stats = &build->stats;
     pvtWarnOnce(context,
-                "there is next to nothing inside at %d voxels, and the surface is not flat: "
-                "triangles may stray from it by %.3g (%.3g voxels)%s; %.2g %% of what they hide "
-                "can be seen",
+                "%s at %d voxels, and the surface is not flat: triangles may stray from it by %.3g "
+                "(%.3g voxels)%s; %.2g %% of what they hide can be seen",
+                build->band.isBare ? "much of the surface has no inside behind it"
+                                   : "there is next to nothing inside",
                 build->band.resolution, stats->tolerance, stats->tolerance / stats->voxelSize,
                 build->options->error > 0.0
                     ? ", as the error allows"
@@ -369,7 +469,7 @@ pvtStatus pvtJudgeBandStep(pvtContext* context, pvtBuild* build)
     pvtQuadScore score = {0};
     pvtStatus status = PVT_OK;
     if (build->occluder.mesh.triangleCount > 0) {
-        status = Score(context, build, &score);
+        status = Score(context, build, &build->occluder.mesh, JUDGE_VIEWS, &score);
     }
     if (status != PVT_OK) {
         return status;

@@ -6,7 +6,6 @@
 enum { SIZE = PVT_SIGHT_SIZE, CELLS = PVT_SIGHT_CELLS, HALVES = PVT_SIGHT_WORDS };
 
 static const uint64_t EVEN = UINT64_C(0x5555555555555555);
-static const float PENALTY = 0.5F; // of a pixel, as a part of what the goal's are worth on average
 // A rectangle reaches into many pixels: that most of a narrow strip beyond the goal is covered
 // spoils many times as many of them as its area would.
 static const double COST = 20.0; // if as much is covered there as the goal has
@@ -55,7 +54,7 @@ double pvtGetCostBeyond(const pvtSightMask* goal, const pvtSightMask* beyond,
     return all > 0 ? COST * out / all : 0.0;
 }
 
-void pvtPunishBeyond(const pvtSightMask* beyond, float (*values)[PVT_SIGHT_STRIDE])
+void pvtPunishBeyond(const pvtSightMask* beyond, float penalty, float (*values)[PVT_SIGHT_STRIDE])
 {
     double sum = 0.0;
     int count = 0;
@@ -66,7 +65,7 @@ void pvtPunishBeyond(const pvtSightMask* beyond, float (*values)[PVT_SIGHT_STRID
             count += value > 0.0F;
         }
     }
-    const float loss = count > 0 ? PENALTY * (float)(sum / count) : 0.0F;
+    const float loss = count > 0 ? penalty * (float)(sum / count) : 0.0F;
     for (int y = 0; y < CELLS; ++y) {
         for (int x = 0; x < CELLS; ++x) {
             if (pvtGetBit(&beyond->words[x / 32][2 * y], 2 * (size_t)x % 64)) {

@@ -13,7 +13,8 @@ void pvtFindBeyond(const pvtSightMask* goal, bool isClose, pvtSightMask* beyond)
 double pvtGetCostBeyond(const pvtSightMask* goal, const pvtSightMask* beyond,
                         const pvtSightMask* covered);
 
-/// Makes each cell there, of values[y + 1][x + 1] for cell (x, y), worth less than nothing.
-void pvtPunishBeyond(const pvtSightMask* beyond, float (*values)[PVT_SIGHT_STRIDE]);
+/// Makes each cell there, of values[y + 1][x + 1] for cell (x, y), worth less than nothing: by this
+/// part of what the goal's are worth on average.
+void pvtPunishBeyond(const pvtSightMask* beyond, float penalty, float (*values)[PVT_SIGHT_STRIDE]);
 
 #endif

@@ -102,6 +102,7 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
                                  .inset = PVT_ASCENT_INSET,
                                  .keepsToGoal = ascent->options->keepsToGoal,
                                  .isClose = ascent->options->isClose,
+                                 .penalty = ascent->options->penalty,
                                  .wantsEdges = wantsEdges};
     pvtPullCorners(context, &pull, &ascent->puller);
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
@@ -139,6 +140,7 @@ static double Judge(pvtContext* context, pvtAscent* ascent)
                                      .inset = PVT_ASCENT_INSET,
                                      .keepsToGoal = ascent->options->keepsToGoal,
                                      .isClose = ascent->options->isClose,
+                                     .penalty = ascent->options->penalty,
                                      .wantsNoPulls = true};
         pvtPullCorners(context, &pull, &ascent->puller);
         sum += ascent->puller.share * pull.count;

@@ -242,11 +242,12 @@ static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2], con
 }
 
 // Pixels beyond the goal are as missing ones that are worth less than nothing.
-static void LoseBeyond(const pvtSightMask* goal, bool isClose, pvtSightMask* missing, Lack* lack)
+static void LoseBeyond(const pvtPullOptions* options, const pvtSightMask* goal,
+                       pvtSightMask* missing, Lack* lack)
 {
     pvtSightMask beyond;
-    pvtFindBeyond(goal, isClose, &beyond);
-    pvtPunishBeyond(&beyond, lack->values);
+    pvtFindBeyond(goal, options->isClose, &beyond);
+    pvtPunishBeyond(&beyond, options->penalty, lack->values);
     for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
         for (int y = 0; y < SIZE; ++y) {
             missing->words[half][y] |= beyond.words[half][y];
@@ -288,7 +289,7 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
         } else {
             puller->worth[b] = WeighCells(puller, sight, &missing, lack.values);
             if (puller->options.keepsToGoal) {
-                LoseBeyond(&sight->goal, puller->options.isClose, &missing, &lack);
+                LoseBeyond(&puller->options, &sight->goal, &missing, &lack);
             }
             PadMissing(&missing, &lack);
             PullEdges(puller, b, places, &lack);

@@ -20,6 +20,7 @@ typedef struct pvtPullOptions {
     float inset; ///< [px] that open edges are drawn short of, so that no gap is too narrow to see
     bool keepsToGoal; ///< what is covered beyond the goal counts against it
     bool isClose;     ///< and what is beside it as well
+    float penalty;    ///< of what is, as a part of what the goal's pixels are worth on average
     bool wantsEdges;
     bool wantsNoPulls; ///< `share` alone
 } pvtPullOptions;

@@ -94,26 +94,34 @@ static void WidenBySheets(pvtBuild* build)
     }
 }
 
-// Sheets as close to the surface as it allows, from the next deviation that was not tried yet.
+bool pvtMayUseFartherSheets(const pvtBuild* build)
+{
+    return build->triedDeviations < DEVIATION_COUNT &&
+           DEVIATIONS[build->triedDeviations] <= GetMostDeviation(build);
+}
+
+// With the next deviation that was not tried yet.
+static pvtStatus FindFartherSheets(pvtContext* context, pvtBuild* build)
+{
+    const pvtStatus status = FindSheets(context, build, DEVIATIONS[build->triedDeviations++]);
+    // Without any bare surface all of it has an inside behind it.
+    build->sheetShare = 1.0;
+    return status == PVT_OK && build->sheets.bare > 0.0
+               ? GetShare(context, build, &build->sheetShare)
+               : status;
+}
+
+// Sheets as close to the surface as it allows.
 static pvtStatus FindClosestSheets(pvtContext* context, pvtBuild* build, bool isLast)
 {
-    const double most = GetMostDeviation(build);
     pvtStatus status = PVT_OK;
-    for (int i = build->triedDeviations; i < DEVIATION_COUNT && DEVIATIONS[i] <= most; ++i) {
-        if (i > 0 && build->sheetShare >= ENOUGH[i - 1]) {
+    while (status == PVT_OK && pvtMayUseFartherSheets(build)) {
+        const int tried = build->triedDeviations;
+        if (tried > 0 &&
+            (build->sheetShare >= ENOUGH[tried - 1] || (!isLast && build->sheetShare < HOPELESS))) {
             return PVT_OK;
         }
-        status = FindSheets(context, build, DEVIATIONS[i]);
-        build->triedDeviations = i + 1;
-        // Without any bare surface all of it has an inside behind it.
-        if (status != PVT_OK || build->sheets.bare <= 0.0) {
-            build->sheetShare = 1.0;
-            return status;
-        }
-        status = GetShare(context, build, &build->sheetShare);
-        if (status != PVT_OK || (!isLast && build->sheetShare < HOPELESS)) {
-            return status;
-        }
+        status = FindFartherSheets(context, build);
     }
     return status;
 }
@@ -132,10 +140,16 @@ static pvtStatus MarkSheets(pvtContext* context, pvtBuild* build)
 
 pvtStatus pvtSheetStep(pvtContext* context, pvtBuild* build)
 {
-    if (!pvtMayUseSheets(build)) {
+    if (!pvtMayUseSheets(build) || build->band.reach > 0.0) {
         return PVT_OK;
     }
     const pvtStatus status = FindClosestSheets(context, build, !pvtMayUseBand(build));
+    return status == PVT_OK ? MarkSheets(context, build) : status;
+}
+
+pvtStatus pvtUseFartherSheets(pvtContext* context, pvtBuild* build)
+{
+    const pvtStatus status = FindFartherSheets(context, build);
     return status == PVT_OK ? MarkSheets(context, build) : status;
 }
 

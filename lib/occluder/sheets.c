@@ -334,6 +334,7 @@ static pvtStatus RunSearch(pvtContext* context, Search* search)
         whole += 0.5 * pvtLength3(pvtCross(pvtSub(p[1], p[0]), pvtSub(p[2], p[0])));
     }
     SumWeights(search);
+    search->set->area = whole;
     search->set->bare = search->left;
     const double enough = MIN_SHARE * whole;
     // The search ends when a few rounds in a row have brought next to nothing.

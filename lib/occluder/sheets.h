@@ -20,7 +20,8 @@ typedef struct pvtSheetSet {
     pvtSheet* sheets;
     size_t count;
     int cellsPerVoxel; ///< of all sheets: 1, 2 or 4
-    double bare;       ///< [vx²] of the surface that has no strict interior behind it
+    double area;       ///< [vx²] of the surface
+    double bare;       ///< [vx²] of it that has no strict interior behind it
 } pvtSheetSet;
 
 typedef struct pvtSheetOptions {

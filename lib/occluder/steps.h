@@ -15,7 +15,9 @@ typedef struct pvtBandPlan {
     int tried;       ///< bands that were not good enough
     double reach;    ///< [wu] from the touched voxels; 0 before it is known
     bool isClose;    ///< what is beside the surface's outline is not free, either
+    bool isHard;     ///< and what is beyond it costs ten times as much
     bool isOff;      ///< none is good enough
+    bool isBare;     ///< there is an inside, but not behind much of the surface
     int resolution;  ///< that nothing is inside at
     bool wantsAgain; ///< another one is to be made
 } pvtBandPlan;
@@ -124,6 +126,10 @@ static inline int pvtSpreadEffort(int count, int triangles)
 }
 /// Whether triangles may lie within a band around the surface, where it would help.
 bool pvtMayUseBand(const pvtBuild* build);
+/// Whether sheets have not been looked for yet as far from the surface as they may be.
+bool pvtMayUseFartherSheets(const pvtBuild* build);
+/// Looks for sheets farther from the surface than those that there are, in place of them.
+pvtStatus pvtUseFartherSheets(pvtContext* context, pvtBuild* build);
 /// Where there is no band: the sheets that were left for it to be tried before, and
 /// PVT_NOTHING_INSIDE where there is no room at all.
 pvtStatus pvtSheetStepWithoutBand(pvtContext* context, pvtBuild* build);

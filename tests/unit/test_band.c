@@ -326,6 +326,56 @@ static void a_band_is_too_narrow_to_close_gaps(void** state)
     DestroyTestContext(context);
 }
 
+// A bell that is open below, with a closed block on its top: an inside, but none behind the bell.
+static void MakeBell(pvtContext* context, pvtMesh* mesh)
+{
+    enum { STEPS = 24, SIDE = STEPS + 1, CORNERS = SIDE * SIDE + 8 };
+    static const uint32_t faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                                         {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    pvtVec3 positions[CORNERS];
+    uint32_t indices[6 * STEPS * STEPS + 36];
+    size_t count = 0;
+    for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
+        const double around = 2.0 * M_PI * (i % SIDE) / STEPS;
+        const double up = 0.5 * M_PI * (i / SIDE) / STEPS;
+        positions[i] = (pvtVec3){cos(around) * cos(up), sin(up), sin(around) * cos(up)};
+        if (i % SIDE < STEPS && i / SIDE < STEPS) {
+            AddQuad(indices, &count, (uint32_t[4]){i, i + 1, i + SIDE + 1, i + SIDE});
+        }
+    }
+    for (uint32_t i = 0; i < 8; ++i) {
+        positions[SIDE * SIDE + i] =
+            (pvtVec3){i & 1 ? 0.2 : -0.2, i & 2 ? 1.3 : 0.9, i & 4 ? 0.2 : -0.2};
+    }
+    for (uint32_t f = 0; f < 6; ++f) {
+        const uint32_t* corners = faces[f];
+        const uint32_t first = SIDE * SIDE;
+        AddQuad(indices, &count,
+                (uint32_t[4]){first + corners[0], first + corners[1], first + corners[2],
+                              first + corners[3]});
+    }
+    CHECK_OK(context, pvtCreateMesh(context, positions, CORNERS, indices, count / 3, mesh));
+}
+
+// What lies strictly inside hides a tenth of it.
+static void what_has_an_inside_in_a_small_part_has_a_band_as_well(void** state)
+{
+    (void)state;
+    Warnings warnings;
+    pvtContext* context = CreateWarningContext(&warnings);
+    const pvtBuildOptions options = GetQuickOptions();
+    Outcome outcome = Build(context, MakeBell, &options);
+    assert_true(outcome.stats.outside == 0);
+    assert_true(outcome.stats.insideFraction > 0.0);
+    assert_true(outcome.stats.tolerance > 0.0);
+    assert_non_null(strstr(warnings.text, "much of the surface has no inside behind it"));
+    const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 256);
+    assert_true(score.recall > 0.8);
+    assert_true(score.precision > 0.9985);
+    FreeOutcome(context, &outcome);
+    DestroyTestContext(context);
+}
+
 static void the_same_comes_out_on_any_number_of_threads(void** state)
 {
     (void)state;
@@ -359,6 +409,7 @@ int main(void)
         cmocka_unit_test(gaps_stay_open),
         cmocka_unit_test(a_curved_shell_is_kept_to_its_outline),
         cmocka_unit_test(a_band_is_too_narrow_to_close_gaps),
+        cmocka_unit_test(what_has_an_inside_in_a_small_part_has_a_band_as_well),
         cmocka_unit_test(the_same_comes_out_on_any_number_of_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -287,6 +287,38 @@ static void panels_of_a_bent_sheet_stay_as_close_to_it_as_the_stats_say(void** s
     DestroyTestContext(context);
 }
 
+static pvtVec3 GetDomePoint(int i, int j, int steps)
+{
+    const double x = 2.0 * i / steps - 1.0, y = 2.0 * j / steps - 1.0;
+    return (pvtVec3){4.0 * x, 4.0 * y, 0.22 * (1.0 - x * x) * (1.0 - y * y)};
+}
+
+// Panels within a quarter of a voxel of it are small, and hide next to nothing large.
+static void a_wall_that_bulges_by_two_voxels_is_hidden_behind_as_a_whole(void** state)
+{
+    (void)state;
+    enum { STEPS = 24 };
+    pvtContext* context = CreateTestContext(2);
+    Soup soup = {.count = 0};
+    for (int i = 0; i < STEPS; ++i) {
+        for (int j = 0; j < STEPS; ++j) {
+            AddQuad(&soup, GetDomePoint(i, j, STEPS), GetDomePoint(i + 1, j, STEPS),
+                    GetDomePoint(i + 1, j + 1, STEPS), GetDomePoint(i, j + 1, STEPS));
+        }
+    }
+    pvtMesh mesh = MakeMesh(context, &soup);
+    const pvtBuildOptions options = GetQuickOptions(16);
+    Outcome outcome = Build(context, &options, &mesh);
+    assert_true(outcome.stats.outside == 0);
+    assert_true(outcome.stats.tolerance == 0.0);
+    CHECK_NEAR(outcome.stats.deviation, outcome.stats.voxelSize, 1e-12);
+    assert_true(outcome.recall > 0.9);
+    assert_true(outcome.precision > 0.999);
+    pvtOccluder_Free(context, &outcome.occluder);
+    pvtMesh_Free(context, &mesh);
+    DestroyTestContext(context);
+}
+
 static pvtGridFrame MakeFrame(void)
 {
     return (pvtGridFrame){.origin = {-8, -8, -8}, .voxelSize = 0.25, .size = {64, 64, 64}};
@@ -532,6 +564,7 @@ int main(void)
         cmocka_unit_test(a_gable_with_a_window_is_covered_up_to_its_slants_and_corners),
         cmocka_unit_test(cracks_in_a_wall_close_without_a_fold),
         cmocka_unit_test(panels_of_a_bent_sheet_stay_as_close_to_it_as_the_stats_say),
+        cmocka_unit_test(a_wall_that_bulges_by_two_voxels_is_hidden_behind_as_a_whole),
         cmocka_unit_test(junctions_and_overlaps_leave_no_seam_in_a_sheet),
         cmocka_unit_test(every_cell_of_a_sheet_is_covered),
         cmocka_unit_test(surface_with_an_inside_behind_it_needs_no_sheets),
