@@ -40,8 +40,8 @@ enum {
 static const double ENOUGH_SHARE = 0.5;
 // Where there is an inside behind a part of the surface, a strict occluder of this recall will do.
 static const double ENOUGH_RECALL = 0.25;
-// The same of sheets: with less, some farther from the surface are tried, and taken where they hide
-// so much more.
+// Of what the surface hides: where a selection on sheets hides less, sheets farther from it are
+// tried, and taken where they hide so many times as much.
 static const double NEARLY_ALL = 0.9, MUCH_MORE = 1.1;
 // Of the surface: where sheets take less it is not flat, and a selection need not be tried.
 static const double FLAT_SHARE = 0.5;
@@ -74,15 +74,17 @@ static bool HasNoInside(const pvtBuild* build)
            (double)solid->strictCount < LEAST_INSIDE * (double)solid->surfaceCount;
 }
 
-// A buoy's hull is open below, its lamp is not.
-static bool IsBare(const pvtBuild* build)
+// Whether there is no inside behind much of the surface: a buoy's hull is open below, though its
+// lamp is not.
+static bool IsOpen(const pvtBuild* build)
 {
-    return build->band.isBare || build->sheets.bare > BARE_SHARE * build->sheets.area;
+    return HasNoInside(build) || build->band.isBare ||
+           build->sheets.bare > BARE_SHARE * build->sheets.area;
 }
 
 bool pvtMayUseBand(const pvtBuild* build)
 {
-    return pvtMayUseSheets(build) && !build->band.isOff && (HasNoInside(build) || IsBare(build));
+    return pvtMayUseSheets(build) && !build->band.isOff && IsOpen(build);
 }
 
 // Lets triangles lie in the touched voxels of `solid` and within `reach` [wu] of them.
@@ -393,7 +395,7 @@ static pvtStatus TryBand(pvtContext* context, pvtBuild* build)
 pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build)
 {
     pvtStatus status = PVT_OK;
-    if (pvtMayUseSheets(build) && (HasNoInside(build) || IsBare(build))) {
+    if (pvtMayUseSheets(build) && IsOpen(build)) {
         status = build->band.reach > 0.0 ? TakeReach(context, build, build->band.reach)
                                          : TryBand(context, build);
     }
@@ -410,7 +412,7 @@ static void PlanNarrower(pvtBuild* build, bool isFarOff)
     while (number > 0 && GetReach(build, number - 1) >= band->reach) {
         --number;
     }
-    number -= isFarOff ? REACH_STEP : 1;
+    number -= isFarOff && number >= REACH_STEP ? REACH_STEP : 1;
     band->isOff = number < 0;
     band->reach = band->isOff ? 0.0 : GetReach(build, number);
 }
@@ -422,7 +424,6 @@ static bool PlanNext(pvtBuild* build, double precision)
     pvtBandPlan* band = &build->band;
     const bool isFarOff = 1.0 - precision > FAR_OFF * (1.0 - LEAST_PRECISION);
     const bool hasError = build->ownOptions.error > 0.0;
-    ++band->tried;
     if (!band->isClose) {
         band->isClose = true;
         band->isHard = isFarOff;

@@ -12,7 +12,6 @@ enum { PVT_MOST_STARTS = 4 }; ///< of an ascent
 /// How triangles are to lie around a surface that has no inside and is not flat. What that gives is
 /// judged when it is made; should too much of what it hides be seen, the build begins again.
 typedef struct pvtBandPlan {
-    int tried;       ///< bands that were not good enough
     double reach;    ///< [wu] from the touched voxels; 0 before it is known
     bool isClose;    ///< what is beside the surface's outline is not free, either
     bool isHard;     ///< and what is beyond it costs ten times as much
