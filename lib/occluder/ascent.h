@@ -3,6 +3,7 @@
 #ifndef PVT_OCCLUDER_ASCENT_H
 #define PVT_OCCLUDER_ASCENT_H
 
+#include "beyond.h"
 #include "enough.h"
 #include "inside.h"
 #include "sheets.h"
@@ -11,9 +12,7 @@ typedef struct pvtAscentOptions {
     const pvtViewOptions* views;  ///< how they are spread, or a list
     const pvtBitGrid* goal;       ///< what there is to hide; borrowed
     const pvtCellGrid* goalCells; ///< parts of other voxels; borrowed; may be null
-    bool keepsToGoal; ///< the inside reaches farther, but there is nothing that may be hidden
-    bool isClose;     ///< nor beside the goal: else a pixel of what a sight shows is free
-    float penalty;    ///< of a pixel there, as a part of what the goal's are worth on average
+    pvtBeyondRule beyond;         ///< where the inside reaches farther than what may be hidden
     const pvtInsideTest* inside;
     const pvtMesh* mesh;       ///< what the goal is of, another start; borrowed; may be null
     const pvtMesh* flat;       ///< an occluder for this budget, another; borrowed; may be null

@@ -423,7 +423,7 @@ static bool PlanNext(pvtBuild* build, double precision)
 {
     pvtBandPlan* band = &build->band;
     const bool isFarOff = 1.0 - precision > FAR_OFF * (1.0 - LEAST_PRECISION);
-    const bool hasError = build->ownOptions.error > 0.0;
+    const bool hasError = build->options->error > 0.0;
     if (!band->isClose) {
         band->isClose = true;
         band->isHard = isFarOff;

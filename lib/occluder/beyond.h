@@ -5,6 +5,13 @@
 
 #include "sight_mask.h"
 
+/// What it costs to cover pixels there.
+typedef struct pvtBeyondRule {
+    bool counts;   ///< else nothing
+    bool isClose;  ///< beside the goal as well: else a pixel of what a sight shows is free
+    float penalty; ///< of a pixel, as a part of what the goal's are worth on average
+} pvtBeyondRule;
+
 /// Pixels of cells that the goal has no pixel of, nor beside, unless it `isClose`: a node that is
 /// splatted may reach a pixel too far.
 void pvtFindBeyond(const pvtSightMask* goal, bool isClose, pvtSightMask* beyond);

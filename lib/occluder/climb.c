@@ -100,9 +100,7 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
                                  .count = wantsEdges ? PVT_MOST_BATCH : ascent->options->batch,
                                  .softness = ascent->softness,
                                  .inset = PVT_ASCENT_INSET,
-                                 .keepsToGoal = ascent->options->keepsToGoal,
-                                 .isClose = ascent->options->isClose,
-                                 .penalty = ascent->options->penalty,
+                                 .beyond = ascent->options->beyond,
                                  .wantsEdges = wantsEdges};
     pvtPullCorners(context, &pull, &ascent->puller);
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
@@ -138,9 +136,7 @@ static double Judge(pvtContext* context, pvtAscent* ascent)
                                      .count = (int)(left < PVT_MOST_BATCH ? left : PVT_MOST_BATCH),
                                      .softness = JUDGE_SOFTNESS,
                                      .inset = PVT_ASCENT_INSET,
-                                     .keepsToGoal = ascent->options->keepsToGoal,
-                                     .isClose = ascent->options->isClose,
-                                     .penalty = ascent->options->penalty,
+                                     .beyond = ascent->options->beyond,
                                      .wantsNoPulls = true};
         pvtPullCorners(context, &pull, &ascent->puller);
         sum += ascent->puller.share * pull.count;

@@ -8,7 +8,6 @@
 // through Edge Sampling, 2018). One such pull costs as much as one evaluation, and moves all
 // corners at once.
 #include "pull.h"
-#include "beyond.h"
 
 #include "base/context.h"
 #include "base/vectors.h"
@@ -242,12 +241,12 @@ static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2], con
 }
 
 // Pixels beyond the goal are as missing ones that are worth less than nothing.
-static void LoseBeyond(const pvtPullOptions* options, const pvtSightMask* goal,
-                       pvtSightMask* missing, Lack* lack)
+static void LoseBeyond(const pvtBeyondRule* rule, const pvtSightMask* goal, pvtSightMask* missing,
+                       Lack* lack)
 {
     pvtSightMask beyond;
-    pvtFindBeyond(goal, options->isClose, &beyond);
-    pvtPunishBeyond(&beyond, options->penalty, lack->values);
+    pvtFindBeyond(goal, rule->isClose, &beyond);
+    pvtPunishBeyond(&beyond, rule->penalty, lack->values);
     for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
         for (int y = 0; y < SIZE; ++y) {
             missing->words[half][y] |= beyond.words[half][y];
@@ -259,11 +258,11 @@ static double SumWorths(const pvtPuller* puller, const pvtSight* sight, const pv
                         const pvtSightMask* missing)
 {
     const double worth = pvtSumWorths(puller->sights, sight, missing, puller->options.softness);
-    if (!puller->options.keepsToGoal) {
+    if (!puller->options.beyond.counts) {
         return worth;
     }
     pvtSightMask beyond;
-    pvtFindBeyond(&sight->goal, puller->options.isClose, &beyond);
+    pvtFindBeyond(&sight->goal, puller->options.beyond.isClose, &beyond);
     return worth - (double)sight->quadCount * pvtGetCostBeyond(&sight->goal, &beyond, covered);
 }
 
@@ -282,14 +281,14 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
             pvtDrawSightTriangle(set, places, t, puller->options.inset, &covered);
         }
         pvtFindMissing(&sight->goal, &covered, &missing);
-        lack.hasLosses = puller->options.keepsToGoal;
+        lack.hasLosses = puller->options.beyond.counts;
         puller->most[b] = (double)sight->quadCount;
         if (puller->options.wantsNoPulls) {
             puller->worth[b] = SumWorths(puller, sight, &covered, &missing);
         } else {
             puller->worth[b] = WeighCells(puller, sight, &missing, lack.values);
-            if (puller->options.keepsToGoal) {
-                LoseBeyond(&puller->options, &sight->goal, &missing, &lack);
+            if (puller->options.beyond.counts) {
+                LoseBeyond(&puller->options.beyond, &sight->goal, &missing, &lack);
             }
             PadMissing(&missing, &lack);
             PullEdges(puller, b, places, &lack);

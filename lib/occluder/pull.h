@@ -3,6 +3,7 @@
 #ifndef PVT_OCCLUDER_PULL_H
 #define PVT_OCCLUDER_PULL_H
 
+#include "beyond.h"
 #include "sights.h"
 #include "triangle_set.h"
 
@@ -18,9 +19,7 @@ typedef struct pvtPullOptions {
     int count;      ///< at most PVT_MOST_BATCH
     float softness; ///< [px]
     float inset; ///< [px] that open edges are drawn short of, so that no gap is too narrow to see
-    bool keepsToGoal; ///< what is covered beyond the goal counts against it
-    bool isClose;     ///< and what is beside it as well
-    float penalty;    ///< of what is, as a part of what the goal's pixels are worth on average
+    pvtBeyondRule beyond; ///< whether what is covered beyond the goal counts against it
     bool wantsEdges;
     bool wantsNoPulls; ///< `share` alone
 } pvtPullOptions;

@@ -37,9 +37,10 @@ typedef struct Room {
     double* open; // [vx²] what may stay uncovered by shapes
 } Room;
 
+// All of them, or none counts.
 static bool AreWithin(const Room* room, const pvtPoint2 (*triangles)[3], size_t count)
 {
-    double open = room->cells == NULL ? *room->open : 0.0;
+    double open = *room->open;
     for (size_t t = 0; t < count; ++t) {
         if (room->cells != NULL
                 ? !pvtIsPolygonWithin(room->cells, room->cellsPerVoxel, triangles[t], 3)
@@ -47,9 +48,7 @@ static bool AreWithin(const Room* room, const pvtPoint2 (*triangles)[3], size_t 
             return false;
         }
     }
-    if (room->cells == NULL) {
-        *room->open = open;
-    }
+    *room->open = open;
     return true;
 }
 
@@ -119,19 +118,12 @@ static void MoveCorner(const Room* room, int32_t step, pvtPoint2* points, size_t
     }
 }
 
-static void OpenCracks(const Room* room)
-{
-    if (room->open != NULL) {
-        *room->open = CRACKS / ROUNDS;
-    }
-}
-
 // Each corner, in steps that halve from the first to the second, in point units.
 static void MoveCorners(const Room* room, const int32_t steps[2], pvtPoint2* points, size_t count)
 {
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < count; ++i) {
-            OpenCracks(room);
+            *room->open = CRACKS / ROUNDS;
             for (int32_t step = steps[0]; step >= steps[1]; step /= 2) {
                 MoveCorner(room, step, points, count, i);
             }
@@ -179,7 +171,7 @@ static bool FillNotch(const Room* room, pvtPoint2* points, size_t count, size_t 
 static size_t FillNotches(const Room* room, pvtPoint2* points, size_t count)
 {
     for (size_t i = 0; i < count && count > 3;) {
-        OpenCracks(room);
+        *room->open = CRACKS / ROUNDS;
         const bool isSpike =
             count > 4 && pvtIsSamePoint(points[(i + count - 1) % count], points[(i + 1) % count]);
         if (isSpike) {
@@ -251,13 +243,14 @@ static pvtStatus GrowPolygons(const EdgeTask* task, const pvtSheet* sheet, const
     pvtPlaneShapes shapes;
     pvtStatus status =
         pvtCollectPlaneShapes(task->context, task->soup, &sheet->plane, task->deviation, &shapes);
-    const Room coarse = {.cells = cells, .cellsPerVoxel = FINER * task->sheets->cellsPerVoxel};
+    double open = 0.0;
+    const Room coarse = {
+        .cells = cells, .cellsPerVoxel = FINER * task->sheets->cellsPerVoxel, .open = &open};
+    const Room exact = {.shapes = &shapes, .open = &open};
     for (size_t p = 0; p < loops->loopCount && status == PVT_OK; ++p) {
         if (pvtIsCancelled(task->context)) {
             status = PVT_CANCELLED;
         } else if (task->on[p] == sheet) {
-            double open = 0.0;
-            const Room exact = {.shapes = &shapes, .open = &open};
             status = GrowPolygon(task->context, &coarse, &exact, loops->points + loops->starts[p],
                                  &task->counts[p]);
         }

@@ -224,8 +224,7 @@ static void what_reaches_beyond_the_goal_is_pulled_back(void** state)
     for (int c = 0; c < 3; ++c) {
         assert_true(lesson.puller.corners[c][1] == 0.0F && lesson.puller.corners[c][2] == 0.0F);
     }
-    options.keepsToGoal = true;
-    options.penalty = 0.5F;
+    options.beyond = (pvtBeyondRule){.counts = true, .penalty = 0.5F};
     pvtPullCorners(context, &options, &lesson.puller);
     assert_true(lesson.puller.share > 0.999); // what edges are pulled by is as without
     for (int c = 0; c < 3; ++c) {
