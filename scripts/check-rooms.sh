@@ -64,7 +64,8 @@ check_includes() {
             fi
             ;;
         esac
-    done < <(grep -rHE '^ *# *include' lib --include='*.h' --include='*.c' --include='*.cpp')
+    done < <(grep -rHE '^ *# *include' lib --include='*.h' --include='*.c' --include='*.cpp' \
+        --include='*.hpp')
 
     # The command is a user: public headers, and its own.
     while IFS=: read -r file line; do
@@ -90,7 +91,7 @@ check_languages() {
 # classes, into the first column.
 check_lengths() {
     local text
-    text="$(find lib apps tests -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' \) -print0 |
+    text="$(find lib apps tests -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp' \) -print0 |
         sort -z | xargs -0 awk '
         FNR == 1 {
             if (lines > 700) print last ": " lines " lines; a file has at most 700"

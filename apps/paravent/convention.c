@@ -6,6 +6,13 @@
 #include <assert.h>
 #include <string.h>
 
+void pvtMakeNameHarmless(char* name)
+{
+    for (; *name != '\0'; ++name) {
+        *name = *name == '$' ? '_' : *name;
+    }
+}
+
 void pvtMakeNodeName(const char* base, int convention, char* name, size_t size)
 {
     const bool isGodot = convention == PVT_CONVENTION_GODOT;
@@ -23,8 +30,7 @@ void pvtMakeNodeName(const char* base, int convention, char* name, size_t size)
         used += length;
     }
     memcpy(name + used, ending, endingSize);
-    // Godot's import acts on "$noimp" and its like wherever they stand in a name.
-    for (size_t i = 0; isGodot && i < used; ++i) {
-        name[i] = name[i] == '$' ? '_' : name[i];
+    if (isGodot) {
+        pvtMakeNameHarmless(name);
     }
 }

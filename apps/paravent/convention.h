@@ -11,4 +11,7 @@ enum { PVT_CONVENTION_PLAIN, PVT_CONVENTION_GODOT };
 /// name is cut, its ending is not.
 void pvtMakeNodeName(const char* base, int convention, char* name, size_t size);
 
+/// Godot's import acts on "$noimp" and its like wherever they stand in a name: "$" becomes "_".
+void pvtMakeNameHarmless(char* name);
+
 #endif

@@ -44,6 +44,12 @@ static pvtStatus CheckFiles(pvtRun* run, const pvtEvaluateLine* line, const Sess
     if (status == PVT_OK) {
         status = pvtCheckPicture(run, "--silhouettes", line->silhouettes);
     }
+    if (status == PVT_OK && line->silhouettes != NULL &&
+        session->fileCount - 1 > PVT_MOST_IN_SHEET) {
+        return pvtRun_Fail(run, PVT_INVALID_ARGUMENT,
+                           "--silhouettes shows at most %d occluders, and there are %d; name fewer",
+                           PVT_MOST_IN_SHEET, session->fileCount - 1);
+    }
     if (status == PVT_OK && line->plot != NULL && !IsStdout(line->plot) &&
         !pvtPathEndsIn(line->plot, ".svg")) {
         return pvtRun_Fail(run, PVT_INVALID_ARGUMENT,

@@ -55,8 +55,10 @@ pvtSheetViews pvtChooseSheetViews(const pvtEvaluation* evaluation);
 pvtStatus pvtDrawSheetViews(pvtContext* context, const pvtSheetViews* chosen,
                             const pvtMesh* const meshes[2], int size, pvtImage* images);
 
+enum { PVT_MOST_IN_SHEET = 27 };
+
 /// A contact sheet: a block an occluder, the same views in each. `meshes` holds the original, then
-/// the occluders.
+/// the occluders, at most PVT_MOST_IN_SHEET: pictures have at most 32,768 pixels a side.
 pvtStatus pvtMakeContactSheet(pvtContext* context, const pvtJudgement* judgement,
                               const pvtMesh* meshes, pvtImage* sheet);
 

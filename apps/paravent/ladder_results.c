@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What `paravent ladder` tells: the model, the stats file, the table.
 #include "choices.h"
+#include "convention.h"
 #include "ladder.h"
 #include "stages.h"
 #include "targets.h"
 
 #include <string.h>
 
-enum { NAME_SIZE = 256, EXTRA_COUNT = 16 };
+enum { NAME_SIZE = 256, EXTRA_COUNT = 18 };
 
 // NAME_LOD0 of plain nodes; NAME_occluder, NAME_occluder_LOD1 and so on of those in a chain.
 static void MakeName(const pvtLadderLine* options, const char* stem, size_t level,
@@ -21,6 +22,9 @@ static void MakeName(const pvtLadderLine* options, const char* stem, size_t leve
     }
     const char* middle = isPlain || isGodot ? "" : "_occluder";
     (void)snprintf(name, NAME_SIZE + 32, "%s%s%s%s", stem, middle, lod, isGodot ? "-occonly" : "");
+    if (isGodot) {
+        pvtMakeNameHarmless(name);
+    }
 }
 
 static void ListExtras(const pvtLadderLine* options, const pvtLevel* level, size_t index,
@@ -36,6 +40,8 @@ static void ListExtras(const pvtLadderLine* options, const pvtLevel* level, size
         {"smallest_hole", stats->smallestHole, NULL},
         {"resolution", stats->resolution, NULL},
         {"voxel_size", stats->voxelSize, NULL},
+        {"surface_polygons", stats->surfacePanels, NULL},
+        {"surface_deviation", stats->deviation, NULL},
         {"budget", level->budget, NULL},
         {"measure", stats->measure, NULL},
         {"measure_of_solid", stats->measureOfSolid, NULL},
@@ -116,6 +122,8 @@ static void WriteLevel(pvtJson* json, const pvtLevel* level, size_t index)
     pvtJson_Number(json, "measure_of_solid", stats->measureOfSolid);
     pvtJson_Integer(json, "candidates", (int64_t)stats->candidateCount);
     pvtJson_Integer(json, "outside", (int64_t)stats->outside);
+    pvtJson_Integer(json, "surface_polygons", stats->surfacePanels);
+    pvtJson_Number(json, "surface_deviation", stats->deviation);
     WriteLevelSeconds(json, stats);
     pvtJson_EndObject(json);
 }

@@ -66,6 +66,8 @@ static void SumUp(pvtGenerated* generated, double passed)
         sum->tolerance = fmax(sum->tolerance, stats->tolerance);
         sum->smallestHole = fmax(sum->smallestHole, stats->smallestHole);
         sum->errorBound = fmax(sum->errorBound, stats->errorBound);
+        sum->deviation = fmax(sum->deviation, stats->deviation);
+        sum->surfacePanels += (int)occluder->instanceCount * stats->surfacePanels;
         sum->measure += stats->measure;
         sum->outside += stats->outside;
         sum->candidateCount += stats->candidateCount;

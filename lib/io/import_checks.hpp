@@ -14,8 +14,8 @@ namespace pvt
 void CheckObj(std::string_view text);
 /// Whether the elements that the header promises are there.
 void CheckPly(std::string_view bytes);
-/// What assimp is to read instead, where it would take the first byte of the data for the end of the
-/// header; empty where the bytes do as they are. They have passed the check.
+/// What assimp is to read instead, where it would take the first byte of the data for the end of
+/// the header; empty where the bytes do as they are. They have passed the check.
 std::string EndPlyHeader(std::string_view bytes);
 /// Whether the size fits the number of triangles, or the text has an end.
 void CheckStl(std::string_view bytes);

@@ -289,7 +289,7 @@ static bool AreMost(const Settling* settling, int outside)
 static pvtStatus PushInside(pvtContext* context, Settling* settling, int begin, int end,
                             int* outside)
 {
-    for (int round = begin; round<end&& * outside> 0; ++round) {
+    for (int round = begin; round < end && (*outside) > 0; ++round) {
         PushOutside(settling, round);
         *outside = TestAll(context, settling);
         if (pvtIsCancelled(context)) {
@@ -303,7 +303,7 @@ static pvtStatus DemandInside(pvtContext* context, Settling* settling, int* outs
 {
     *outside = BeginAnew(context, settling);
     settling->moveCount = 1; // 0 stands for a point that has not been looked at
-    for (int round = 0; round<DEMANDING_ROUNDS&& * outside> 0; ++round) {
+    for (int round = 0; round < DEMANDING_ROUNDS && (*outside) > 0; ++round) {
         AddDemands(settling, round);
         MeetDemands(settling);
         *outside = TestAll(context, settling);

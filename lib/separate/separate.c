@@ -298,6 +298,7 @@ static void ScaleStats(const pvtGroup* group, pvtBuildStats* stats)
     stats->tolerance *= group->scale;
     stats->smallestHole *= group->scale;
     stats->errorBound *= group->scale;
+    stats->deviation *= group->scale;
     stats->suggestedHole *= group->scale;
     stats->measure *= group->volume;
     stats->measureOfSolid *= group->volume;

@@ -82,6 +82,12 @@ expect 1 "cannot go to the standard output" evaluate in.gltf in.gltf --silhouett
 expect 2 "missing.glb" evaluate "$boulder" missing.glb "${quick[@]}" --json a.json
 expect 2 "wild.gltf" evaluate wild.gltf in.gltf "${quick[@]}" --json a.json
 expect 3 ".png" evaluate "$boulder" in.gltf --silhouettes a.jpg
+many=()
+for i in {1..28}; do
+    many+=(in.gltf)
+done
+expect 1 "--silhouettes shows at most 27 occluders, and there are 28" evaluate "$boulder" \
+    "${many[@]}" --silhouettes a.png
 expect 1 "--plot a.png: a plot is written as .svg" evaluate "$boulder" in.gltf --plot a.png
 expect 4 "folder nowhere" evaluate "$boulder" in.gltf --json nowhere/a.json
 expect 4 "/dev/full cannot be written" evaluate "$boulder" in.gltf "${quick[@]}" --csv /dev/full \

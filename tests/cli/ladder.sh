@@ -83,6 +83,10 @@ holds "the others are numbered" grep -q '"boulder_occluder_LOD2"' names.gltf
 expect 0 "" ladder "$boulder" -o names.gltf "${small[@]}" --convention godot
 holds "Godot's suffix" grep -q '"boulder-occonly"' names.gltf
 holds "Godot's suffix, numbered" grep -q '"boulder_LOD2-occonly"' names.gltf
+cp "$boulder" 'a$noimp.glb'
+expect 0 "" ladder 'a$noimp.glb' -o names.gltf "${small[@]}" --convention godot
+holds "Godot's import has nothing to act on" grep -q '"a_noimp-occonly"' names.gltf
+rm 'a$noimp.glb'
 expect 0 "Godot's import makes one occluder of all" ladder "$boulder" -o names.gltf "${small[@]}" \
     --convention godot --naming suffix
 holds "Godot's suffix behind the level's" grep -q '"boulder_LOD0-occonly"' names.gltf

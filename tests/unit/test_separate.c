@@ -181,6 +181,31 @@ static void the_ground_is_below_the_instance_not_the_mesh(void** state)
     DestroyTestContext(context);
 }
 
+// Panels on the surface of an open block lie as close to it as the world's lengths tell.
+static void panels_on_the_surface_stray_farther_in_a_larger_instance(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(1);
+    pvtMesh mesh = MakeBlock(context, (pvtVec3){2, 3, 2}, true);
+    const pvtInstance instances[] = {{0, kIdentity, "small"}, {0, kLarge, "large"}};
+    double deviations[2], bounds[2];
+    for (int i = 0; i < 2; ++i) {
+        const pvtInstanceSet set = {&mesh, 1, &instances[i], 1};
+        const pvtBuildOptions options = MakeOptions();
+        pvtSeparation separation;
+        CHECK_OK(context, pvtBuildSeparateOccluders(context, &options, &set, &separation));
+        assert_int_equal(separation.count, 1);
+        assert_true(separation.occluders[0].stats.surfacePanels > 0);
+        deviations[i] = separation.occluders[0].stats.deviation;
+        bounds[i] = separation.occluders[0].stats.errorBound;
+        pvtSeparation_Free(context, &separation);
+    }
+    assert_true(deviations[0] > 0.0 && bounds[1] > 1.5 * bounds[0]);
+    CHECK_NEAR(deviations[1] / deviations[0], bounds[1] / bounds[0], 1e-9);
+    pvtMesh_Free(context, &mesh);
+    DestroyTestContext(context);
+}
+
 // Turned so that its opening is down in the world, the same block is closed by the ground, and its
 // occluder lies in it.
 static void an_occluder_comes_back_to_the_space_of_its_mesh(void** state)
@@ -489,6 +514,7 @@ int main(void)
         cmocka_unit_test(instances_share_one_occluder_that_lies_in_each_of_them),
         cmocka_unit_test(world_lengths_hold_for_the_largest_instance),
         cmocka_unit_test(the_ground_is_below_the_instance_not_the_mesh),
+        cmocka_unit_test(panels_on_the_surface_stray_farther_in_a_larger_instance),
         cmocka_unit_test(an_occluder_comes_back_to_the_space_of_its_mesh),
         cmocka_unit_test(meshes_without_an_occluder_are_told_and_stop_nobody),
         cmocka_unit_test(more_instances_than_any_budget_are_told_to_be_parted),
