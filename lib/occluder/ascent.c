@@ -26,8 +26,10 @@
 enum {
     QUADS = 400,            // drawn a sight
     GOAL_RESOLUTION = 256,  // nodes, about twice as many as pixels
-    FIELD_RESOLUTION = 272, // nodes: a voxel each at the default resolution
+    FIELD_RESOLUTION = 288, // nodes: a voxel each at the default resolution, in a band as well
 };
+
+static const double TOUCHED = 1.8; // [vx] from the surface to the far corner of a touched voxel
 
 int pvtGetAscentStart(int budget)
 {
@@ -162,8 +164,15 @@ static pvtStatus MakeRoom(pvtContext* context, pvtAscent* ascent)
 static pvtStatus MakeSights(pvtContext* context, pvtAscent* ascent)
 {
     const pvtAscentOptions* options = ascent->options;
-    const pvtSightOptions sights = {
-        .views = options->views, .count = options->sights, .quads = QUADS, .seed = options->seed};
+    const pvtSightOptions sights = {.views = options->views,
+                                    .count = options->sights,
+                                    .stray = options->stray / ascent->frame.voxelSize + TOUCHED,
+                                    .quads = QUADS,
+                                    .seed = options->seed};
+    if (options->mostWrong > 0.0) {
+        return pvtCreateMeshSights(context, &sights, &ascent->frame, options->mesh,
+                                   &ascent->sights);
+    }
     pvtField goal;
     pvtStatus status =
         pvtCreateField(context, options->goal, options->goalCells, GOAL_RESOLUTION, &goal);

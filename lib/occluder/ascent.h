@@ -3,18 +3,21 @@
 #ifndef PVT_OCCLUDER_ASCENT_H
 #define PVT_OCCLUDER_ASCENT_H
 
-#include "beyond.h"
 #include "enough.h"
 #include "inside.h"
 #include "sheets.h"
 
 typedef struct pvtAscentOptions {
     const pvtViewOptions* views;  ///< how they are spread, or a list
-    const pvtBitGrid* goal;       ///< what there is to hide; borrowed
+    const pvtBitGrid* goal;       ///< what there is to hide; borrowed; may be null
     const pvtCellGrid* goalCells; ///< parts of other voxels; borrowed; may be null
-    pvtBeyondRule beyond;         ///< where the inside reaches farther than what may be hidden
+    bool mindsBeyond; ///< whether the inside reaches far beyond the goal, and triangles should not
+    double mostWrong; ///< 0 to 1: the part of what triangles hide that the mesh need not; above 0
+                      ///< what there is to hide is what the mesh hides, and no goal is needed
+    double stray;     ///< [wu] that triangles may do from the touched voxels then
     const pvtInsideTest* inside;
     const pvtMesh* mesh;       ///< what the goal is of, another start; borrowed; may be null
+                               ///< unless it is the goal
     const pvtMesh* flat;       ///< an occluder for this budget, another; borrowed; may be null
     const pvtSheetSet* sheets; ///< polygons on these stay where they are; borrowed; may be null
     int budget;                ///< triangles, at most PVT_MOST_ASCENT

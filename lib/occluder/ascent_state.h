@@ -31,6 +31,8 @@ typedef struct pvtAscent {
     float softness;      ///< [px]
     float reach;         ///< [vx] of a step
     int iterations;      ///< steps of a climb
+    float wrongCost;     ///< as pvtPullOptions tells
+    double right, wrong; ///< what was hidden in the last steps, the later the more it counts
     bool isShell;        ///< most triangles are between walls, or were when they settled once
 } pvtAscent;
 

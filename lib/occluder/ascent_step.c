@@ -10,9 +10,6 @@
 // which is looked at in nodes of four voxels and more (ascent.c), and cells would take most memory.
 enum { FINEST_GOAL = 512 };
 
-// Of a pixel beyond the goal, as a part of what the goal's are worth on average.
-static const float PENALTY = 0.5F, HARD_PENALTY = 5.0F;
-
 bool pvtMayAscend(const pvtBuild* build)
 {
     const bool hasRoom = build->stats.tolerance > 0.0 || build->solid.strictCount > 0;
@@ -34,7 +31,7 @@ pvtInterior pvtGetInterior(const pvtBuild* build)
                          .touching = build->touching.starts != NULL ? &build->touching : NULL};
 }
 
-// What there is to hide.
+// What there is to hide, where it is not what the mesh hides.
 typedef struct Goal {
     const pvtBitGrid* voxels;
     const pvtCellGrid* cells; // null: none
@@ -68,7 +65,6 @@ static pvtStatus MakeGoalWithin(pvtContext* context, const pvtBuild* build, Goal
 
 static pvtStatus MakeGoal(pvtContext* context, const pvtBuild* build, Goal* goal)
 {
-    *goal = (Goal){0};
     // What is below a landscape is inside because somebody says so. From the side it is seen, below
     // the landscape's edge, and hides what the landscape does not.
     if (build->options->terrain) {
@@ -106,19 +102,19 @@ static pvtStatus Ascend(pvtContext* context, pvtBuild* build)
     const int effort = (int)build->options->effort;
     const int budget = pvtGetAscentBudget(build);
     const double share = pvtGetTimeShare(build);
+    const double mostWrong = pvtGetMostWrong(build);
     // Along a surface triangles have a long way to where they are needed, whatever the effort.
-    const bool isSurface = build->options->terrain || build->isBand;
-    const int least = isSurface ? 1 : 0;
+    const int least = build->options->terrain || build->isBand ? 1 : 0;
     const pvtViewOptions views = pvtGetViewOptions(build);
-    Goal goal;
-    pvtStatus status = MakeGoal(context, build, &goal);
+    Goal goal = {0};
+    pvtStatus status = mostWrong > 0.0 ? PVT_OK : MakeGoal(context, build, &goal);
     const pvtAscentOptions options = {
         .views = &views,
         .goal = goal.voxels,
         .goalCells = goal.cells,
-        .beyond = {.counts = isSurface,
-                   .isClose = build->band.isClose,
-                   .penalty = build->band.isHard ? HARD_PENALTY : PENALTY},
+        .mindsBeyond = build->options->terrain && !build->isBand,
+        .mostWrong = mostWrong,
+        .stray = build->stats.tolerance,
         .inside = &build->inside,
         .mesh = build->mesh,
         .flat = build->stats.tolerance > 0.0 ? &build->flat.mesh : NULL,

@@ -8,17 +8,10 @@ enum { SIZE = PVT_SIGHT_SIZE, CELLS = PVT_SIGHT_CELLS, HALVES = PVT_SIGHT_WORDS 
 static const uint64_t EVEN = UINT64_C(0x5555555555555555);
 // A rectangle reaches into many pixels: that most of a narrow strip beyond the goal is covered
 // spoils many times as many of them as its area would.
-static const double COST = 20.0; // if as much is covered there as the goal has
+static const double COST = 20.0;   // if as much is covered there as the goal has
+static const float PENALTY = 0.5F; // of a pixel, as a part of what the goal's are worth on average
 
-// The goal's pixels in the two rows of cells from y on.
-static void FindCells(const pvtSightMask* goal, int y, uint64_t near[HALVES])
-{
-    for (int half = 0; half < HALVES; ++half) {
-        near[half] = goal->words[half][y] | goal->words[half][y + 1];
-    }
-}
-
-// And those around them.
+// The goal's pixels in the two rows of cells from y on, and those around them.
 static void FindCellsAround(const pvtSightMask* goal, int y, uint64_t near[HALVES])
 {
     near[0] = near[1] = 0;
@@ -29,11 +22,11 @@ static void FindCellsAround(const pvtSightMask* goal, int y, uint64_t near[HALVE
     }
 }
 
-void pvtFindBeyond(const pvtSightMask* goal, bool isClose, pvtSightMask* beyond)
+void pvtFindBeyond(const pvtSightMask* goal, pvtSightMask* beyond)
 {
     for (int y = 0; y < SIZE; y += 2) {
         uint64_t near[HALVES];
-        (isClose ? FindCells : FindCellsAround)(goal, y, near);
+        FindCellsAround(goal, y, near);
         for (int half = 0; half < HALVES; ++half) {
             const uint64_t cells = ~(near[half] | near[half] >> 1) & EVEN;
             beyond->words[half][y] = beyond->words[half][y + 1] = cells | cells << 1;
@@ -54,7 +47,7 @@ double pvtGetCostBeyond(const pvtSightMask* goal, const pvtSightMask* beyond,
     return all > 0 ? COST * out / all : 0.0;
 }
 
-void pvtPunishBeyond(const pvtSightMask* beyond, float penalty, float (*values)[PVT_SIGHT_STRIDE])
+void pvtPunishBeyond(const pvtSightMask* beyond, float (*values)[PVT_SIGHT_STRIDE])
 {
     double sum = 0.0;
     int count = 0;
@@ -65,7 +58,7 @@ void pvtPunishBeyond(const pvtSightMask* beyond, float penalty, float (*values)[
             count += value > 0.0F;
         }
     }
-    const float loss = count > 0 ? penalty * (float)(sum / count) : 0.0F;
+    const float loss = count > 0 ? PENALTY * (float)(sum / count) : 0.0F;
     for (int y = 0; y < CELLS; ++y) {
         for (int x = 0; x < CELLS; ++x) {
             if (pvtGetBit(&beyond->words[x / 32][2 * y], 2 * (size_t)x % 64)) {

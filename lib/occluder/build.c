@@ -30,6 +30,8 @@ static pvtStatus RunSteps(pvtContext* context, pvtBuild* build)
         {"chains", pvtChainStep, &build->stats.seconds.chains},
         // The cut through all chains that hides most within the budget.
         {"select", pvtSelectStep, &build->stats.seconds.select},
+        // Where that hides next to nothing, strictly inside, a band is tried as well.
+        {"thin", pvtThinStep, &build->stats.seconds.select},
         // Panels that may leave the surface move, tilt and trade triangles while they hide more.
         {"refine", pvtRefineStep, &build->stats.seconds.refine},
         // Where all is to stay inside, triangles leave their planes and climb together.

@@ -44,6 +44,13 @@ static const float COARSE_PIECE = 16.0F, FINE_PIECE = 8.0F; // [vx]
 static const float MOMENTUM = 0.9F, SQUARES = 0.98F;
 static const float THIN_LOOK = 4.0F, THIN_LEAST = 0.1F, SHELL_LEAST = 0.3F; // [vx]
 static const float THIN_PART = 0.1F;
+// Of a pixel that is hidden wrongly, as one that is rightly counts 1.
+static const float FIRST_COST = 5.0F, LEAST_COST = 0.3F, MOST_COST = 100.0F;
+static const float COST_RATE = 0.03F; // that it changes by in a step, at most
+static const double MEMORY = 0.9;     // of what was hidden, from a step to the next
+// Of the share of all that is hidden rightly: what a greater share than the most costs that may be
+// hidden wrongly.
+static const double EXCESS_COST = 100.0;
 static const float AHEAD = 2.0F;       // of a step
 static const float LEAST_PULL = 0.02F; // of the strongest: corners that are pulled less move less
 
@@ -94,15 +101,33 @@ static void MoveCorners(pvtAscent* ascent)
     }
 }
 
+// What is hidden wrongly costs more as long as it is too much, and less otherwise: a Lagrange
+// multiplier that follows (Platt and Barr, Constrained Differential Optimization, 1987).
+static void AdaptCost(pvtAscent* ascent)
+{
+    const double most = ascent->options->mostWrong;
+    ascent->right = MEMORY * ascent->right + ascent->puller.right;
+    ascent->wrong = MEMORY * ascent->wrong + ascent->puller.wrong;
+    const double hidden = ascent->right + ascent->wrong;
+    if (most > 0.0) {
+        const double excess = hidden > 0.0 ? ascent->wrong / hidden / most - 1.0 : -1.0;
+        ascent->wrongCost *= 1.0F + COST_RATE * (float)(excess < 1.0 ? excess : 1.0);
+        ascent->wrongCost = ascent->wrongCost > LEAST_COST ? ascent->wrongCost : LEAST_COST;
+        ascent->wrongCost = ascent->wrongCost < MOST_COST ? ascent->wrongCost : MOST_COST;
+    }
+}
+
 void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
 {
     const pvtPullOptions pull = {.first = ascent->next,
                                  .count = wantsEdges ? PVT_MOST_BATCH : ascent->options->batch,
                                  .softness = ascent->softness,
                                  .inset = PVT_ASCENT_INSET,
-                                 .beyond = ascent->options->beyond,
+                                 .mindsBeyond = ascent->options->mindsBeyond,
+                                 .wrongCost = ascent->wrongCost,
                                  .wantsEdges = wantsEdges};
     pvtPullCorners(context, &pull, &ascent->puller);
+    AdaptCost(ascent);
     ascent->next = (ascent->next + (size_t)pull.count) % ascent->sights.count;
     // Contacts change slowly: they are looked for now and then, a little farther away.
     const bool isLate = ascent->softness < LATE_SOFTNESS;
@@ -125,10 +150,11 @@ void pvtAscent_Step(pvtContext* context, pvtAscent* ascent, bool wantsEdges)
     pvtPushInside(&ascent->contacts, &ascent->field, SWEEPS, &ascent->set);
 }
 
-// What the triangles hide, as a share of all that can be: over all sights.
+// What the triangles hide, as a share of all that can be, over all sights; less where too much of
+// it is wrong.
 static double Judge(pvtContext* context, pvtAscent* ascent)
 {
-    double sum = 0.0;
+    double sum = 0.0, right = 0.0, wrong = 0.0;
     const size_t count = ascent->sights.count;
     for (size_t first = 0; first < count; first += PVT_MOST_BATCH) {
         const size_t left = count - first;
@@ -136,12 +162,16 @@ static double Judge(pvtContext* context, pvtAscent* ascent)
                                      .count = (int)(left < PVT_MOST_BATCH ? left : PVT_MOST_BATCH),
                                      .softness = JUDGE_SOFTNESS,
                                      .inset = PVT_ASCENT_INSET,
-                                     .beyond = ascent->options->beyond,
+                                     .mindsBeyond = ascent->options->mindsBeyond,
                                      .wantsNoPulls = true};
         pvtPullCorners(context, &pull, &ascent->puller);
         sum += ascent->puller.share * pull.count;
+        right += ascent->puller.right;
+        wrong += ascent->puller.wrong;
     }
-    return sum / (double)count;
+    const double share = wrong > 0.0 ? wrong / (right + wrong) : 0.0;
+    const double excess = share - ascent->options->mostWrong;
+    return sum / (double)count - (excess > 0.0 ? EXCESS_COST * excess : 0.0);
 }
 
 // Forgets what is known of the corners and contacts of another set.
@@ -301,6 +331,7 @@ pvtStatus pvtAscent_Climb(pvtContext* context, pvtAscent* ascent)
 {
     bool goesOn = true;
     ascent->bestWorth = -HUGE_VAL;
+    ascent->wrongCost = ascent->options->mostWrong > 0.0 ? FIRST_COST : 0.0F;
     PlanSteps(ascent);
     pvtStatus status = TryMesh(context, ascent->options->mesh, ascent);
     if (status == PVT_OK) {

@@ -11,7 +11,7 @@
 
 #include "base/context.h"
 #include "base/vectors.h"
-#include "sight_mask.h"
+#include "beyond.h"
 
 #include <assert.h>
 #include <math.h>
@@ -31,6 +31,7 @@ enum {
 // From an edge to the pixel behind it [px].
 static const float BEHIND = 0.5F;
 static const float SPACING = 2.0F; // [px] from one look behind an edge to the next
+static const uint64_t EVEN = UINT64_C(0x5555555555555555);
 
 void pvtPuller_Free(pvtContext* context, pvtPuller* puller)
 {
@@ -120,29 +121,79 @@ static void PadMissing(const pvtSightMask* missing, Lack* lack)
     }
 }
 
-// Fills the values, and sums the worths.
-static double WeighCells(const pvtPuller* puller, const pvtSight* sight,
+static void ClearValues(float (*values)[STRIDE])
+{
+    if (values != NULL) {
+        memset(values, 0, (ENDS + 1) * sizeof *values);
+    }
+}
+
+static void SumValues(float (*values)[STRIDE])
+{
+    if (values != NULL) {
+        SumColumns(values + 1);
+        SumRows(values + 1);
+    }
+}
+
+// What each pixel of a rectangle is worth: the table holds differences until they are summed.
+static inline void AddSlope(const pvtSightQuad* quad, float slope, float (*values)[STRIDE])
+{
+    if (values == NULL) {
+        return;
+    }
+    values[quad->y0 + 1][quad->x0 + 1] += slope;
+    values[quad->y0 + 1][quad->x1 + 1] -= slope;
+    values[quad->y1 + 1][quad->x0 + 1] -= slope;
+    values[quad->y1 + 1][quad->x1 + 1] += slope;
+}
+
+// Of a sight's rectangles.
+typedef struct Worths {
+    double worth;
+    double hidden; // those of which nothing is missing
+} Worths;
+
+// Fills the values, unless there are none.
+static Worths WeighCells(const pvtPuller* puller, const pvtSight* sight,
                          const pvtSightMask* missing, float (*values)[STRIDE])
 {
     uint16_t sums[ENDS][STRIDE];
     const float softness = puller->options.softness;
     pvtSumMissing(missing, sums);
-    memset(values, 0, (ENDS + 1) * sizeof *values);
-    double worth = 0.0;
+    ClearValues(values);
+    Worths worths = {0.0, 0.0};
     const pvtSightQuad* quads = puller->sights->quads + sight->firstQuad;
     for (size_t q = 0; q < sight->quadCount; ++q) {
-        const pvtSightQuad* quad = &quads[q];
-        const float here = pvtGetWorth(pvtCountMissing(sums, quad), softness);
-        const float slope = here * here / softness;
-        worth += (double)here;
-        values[quad->y0 + 1][quad->x0 + 1] += slope;
-        values[quad->y0 + 1][quad->x1 + 1] -= slope;
-        values[quad->y1 + 1][quad->x0 + 1] -= slope;
-        values[quad->y1 + 1][quad->x1 + 1] += slope;
+        const float here = pvtGetWorth(pvtCountMissing(sums, &quads[q]), softness);
+        worths.worth += (double)here;
+        worths.hidden += here >= 1.0F ? 1.0 : 0.0;
+        AddSlope(&quads[q], here * here / softness, values);
     }
-    SumColumns(values + 1);
-    SumRows(values + 1);
-    return worth;
+    SumValues(values);
+    return worths;
+}
+
+// The same of those that reach beyond the goal; what matters of them is what is not covered at all.
+static Worths WeighWrong(const pvtPuller* puller, const pvtSight* sight,
+                         const pvtSightMask* covered, float (*values)[STRIDE])
+{
+    uint16_t sums[ENDS][STRIDE];
+    const float softness = puller->options.softness;
+    pvtSumOpen(covered, sums);
+    ClearValues(values);
+    Worths worths = {0.0, 0.0};
+    const pvtWrongQuad* wrongs = puller->sights->wrongs + sight->firstWrong;
+    for (size_t q = 0; q < sight->wrongCount; ++q) {
+        const pvtSightQuad* quad = &wrongs[q].quad;
+        const float weight = wrongs[q].weight;
+        const float here = pvtGetWorth(pvtCountMissing(sums, quad), softness);
+        worths.worth += (double)(weight * here);
+        worths.hidden += here >= 1.0F ? (double)weight : 0.0;
+        AddSlope(quad, weight * here * here / softness, values);
+    }
+    SumValues(values);
+    return worths;
 }
 
 // The worth behind an edge, by how near it is to either end and to the middle.
@@ -240,13 +291,44 @@ static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2], con
     }
 }
 
-// Pixels beyond the goal are as missing ones that are worth less than nothing.
-static void LoseBeyond(const pvtBeyondRule* rule, const pvtSightMask* goal, pvtSightMask* missing,
-                       Lack* lack)
+// Beyond the goal's whole cells a pixel that is covered is worth less than nothing: there it counts
+// as missing, and what is missing of the goal does not.
+static void LoseWrong(const pvtPuller* puller, const pvtSight* sight, const float (*slopes)[STRIDE],
+                      pvtSightMask* missing, Lack* lack)
 {
+    uint64_t whole[CELLS];
+    pvtFindWholeCells(&sight->goal, whole);
+    for (int y = 0; y < CELLS; ++y) {
+        for (int x = 0; x < CELLS; ++x) {
+            if ((whole[y] >> x & 1) == 0) {
+                lack->values[y + 1][x + 1] = -puller->options.wrongCost * slopes[y + 1][x + 1];
+            }
+        }
+    }
+    for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
+        for (int y = 0; y < SIZE; ++y) {
+            const uint64_t* goal = &sight->goal.words[half][y & ~1];
+            const uint64_t both = goal[0] & goal[1];
+            const uint64_t cells = both & both >> 1 & EVEN;
+            missing->words[half][y] &= cells | cells << 1;
+            missing->words[half][y] |= ~sight->goal.words[half][y];
+        }
+    }
+}
+
+// Pixels beyond the goal are as missing ones that are worth less than nothing.
+static void LoseBeyond(const pvtPuller* puller, size_t b, const pvtSightMask* covered,
+                       pvtSightMask* missing, Lack* lack, double* worth)
+{
+    const pvtSight* sight = pvtPuller_GetSight(puller, b);
     pvtSightMask beyond;
-    pvtFindBeyond(goal, rule->isClose, &beyond);
-    pvtPunishBeyond(&beyond, rule->penalty, lack->values);
+    pvtFindBeyond(&sight->goal, &beyond);
+    if (puller->options.wantsNoPulls) {
+        *worth -= (double)sight->quadCount * pvtGetCostBeyond(&sight->goal, &beyond, covered);
+        return;
+    }
+    lack->hasLosses = true;
+    pvtPunishBeyond(&beyond, lack->values);
     for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
         for (int y = 0; y < SIZE; ++y) {
             missing->words[half][y] |= beyond.words[half][y];
@@ -254,16 +336,28 @@ static void LoseBeyond(const pvtBeyondRule* rule, const pvtSightMask* goal, pvtS
     }
 }
 
-static double SumWorths(const pvtPuller* puller, const pvtSight* sight, const pvtSightMask* covered,
-                        const pvtSightMask* missing)
+static void WeighSight(pvtPuller* puller, size_t b, const pvtSightMask* covered,
+                       pvtSightMask* missing, Lack* lack)
 {
-    const double worth = pvtSumWorths(puller->sights, sight, missing, puller->options.softness);
-    if (!puller->options.beyond.counts) {
-        return worth;
+    const pvtSight* sight = pvtPuller_GetSight(puller, b);
+    const bool wantsPulls = !puller->options.wantsNoPulls;
+    const Worths worths = WeighCells(puller, sight, missing, wantsPulls ? lack->values : NULL);
+    puller->most[b] = (double)sight->quadCount;
+    puller->worth[b] = worths.worth;
+    puller->rights[b] = worths.hidden;
+    puller->wrongs[b] = 0.0;
+    lack->hasLosses = wantsPulls && sight->wrongCount > 0 && puller->options.wrongCost > 0.0F;
+    if (sight->wrongCount > 0) {
+        float slopes[ENDS + 1][STRIDE];
+        const Worths wrong = WeighWrong(puller, sight, covered, lack->hasLosses ? slopes : NULL);
+        puller->wrongs[b] = wrong.hidden;
+        if (lack->hasLosses) {
+            LoseWrong(puller, sight, (const float(*)[STRIDE])slopes, missing, lack);
+        }
     }
-    pvtSightMask beyond;
-    pvtFindBeyond(&sight->goal, puller->options.beyond.isClose, &beyond);
-    return worth - (double)sight->quadCount * pvtGetCostBeyond(&sight->goal, &beyond, covered);
+    if (puller->options.mindsBeyond) {
+        LoseBeyond(puller, b, covered, missing, lack, &puller->worth[b]);
+    }
 }
 
 static void PullSights(size_t begin, size_t end, int worker, void* taskData)
@@ -281,15 +375,8 @@ static void PullSights(size_t begin, size_t end, int worker, void* taskData)
             pvtDrawSightTriangle(set, places, t, puller->options.inset, &covered);
         }
         pvtFindMissing(&sight->goal, &covered, &missing);
-        lack.hasLosses = puller->options.beyond.counts;
-        puller->most[b] = (double)sight->quadCount;
-        if (puller->options.wantsNoPulls) {
-            puller->worth[b] = SumWorths(puller, sight, &covered, &missing);
-        } else {
-            puller->worth[b] = WeighCells(puller, sight, &missing, lack.values);
-            if (puller->options.beyond.counts) {
-                LoseBeyond(&puller->options.beyond, &sight->goal, &missing, &lack);
-            }
+        WeighSight(puller, b, &covered, &missing, &lack);
+        if (!puller->options.wantsNoPulls) {
             PadMissing(&missing, &lack);
             PullEdges(puller, b, places, &lack);
         }
@@ -329,10 +416,13 @@ void pvtPullCorners(pvtContext* context, const pvtPullOptions* options, pvtPulle
                  set->edgeCount, puller->edges);
     }
     double worth = 0.0, most = 0.0;
+    puller->right = puller->wrong = 0.0;
     for (size_t b = 0; b < (size_t)options->count; ++b) {
         const double weight = (double)pvtPuller_GetSight(puller, b)->weight;
         worth += weight * puller->worth[b];
         most += weight * puller->most[b];
+        puller->right += weight * puller->rights[b];
+        puller->wrong += weight * puller->wrongs[b];
     }
     puller->share = most > 0.0 ? worth / most : 0.0;
 }

@@ -3,7 +3,6 @@
 #ifndef PVT_OCCLUDER_PULL_H
 #define PVT_OCCLUDER_PULL_H
 
-#include "beyond.h"
 #include "sights.h"
 #include "triangle_set.h"
 
@@ -19,7 +18,8 @@ typedef struct pvtPullOptions {
     int count;      ///< at most PVT_MOST_BATCH
     float softness; ///< [px]
     float inset; ///< [px] that open edges are drawn short of, so that no gap is too narrow to see
-    pvtBeyondRule beyond; ///< whether what is covered beyond the goal counts against it
+    bool mindsBeyond; ///< whether what is covered beyond a goal of voxels counts against it
+    float wrongCost; ///< of a pixel that is hidden wrongly, as that of one that is rightly counts 1
     bool wantsEdges;
     bool wantsNoPulls; ///< `share` alone
 } pvtPullOptions;
@@ -32,6 +32,7 @@ typedef struct pvtPuller {
     float (*edgePulls)[2];   ///< sight × edge
     double worth[PVT_MOST_BATCH];
     double most[PVT_MOST_BATCH];
+    double rights[PVT_MOST_BATCH], wrongs[PVT_MOST_BATCH];
     pvtSightMask* masks;       ///< sight × triangle
     pvtSightRows* rows;        ///< sight × triangle: the rows that its mask may have pixels in
     pvtSightMask (*layers)[3]; ///< sight × covered at least once, twice, thrice
@@ -42,6 +43,7 @@ typedef struct pvtPuller {
     float (*corners)[3]; ///< [vx⁻¹] what the worth grows by as each corner moves
     float (*edges)[3];   ///< the same for a corner between an edge's ends, if it had one
     double share;        ///< of the rectangles' worth if all were hidden
+    double right, wrong; ///< what is hidden of the goals, and besides, where sights show a mesh
     double* triangles;   ///< what the worth would lose with each triangle
 } pvtPuller;
 
@@ -56,7 +58,8 @@ static inline const pvtSight* pvtPuller_GetSight(const pvtPuller* puller, size_t
     return &puller->sights->sights[(puller->options.first + b) % puller->sights->count];
 }
 
-/// Fills `share`, `corners` unless they are not wanted, and, if wanted, `edges`.
+/// Fills `share`, `right` and `wrong`, `corners` unless they are not wanted, and, if wanted,
+/// `edges`. The share is that of the goals alone.
 void pvtPullCorners(pvtContext* context, const pvtPullOptions* options, pvtPuller* puller);
 /// Fills `triangles`, for at least a quarter of them, those that cover the fewest pixels alone; it
 /// is HUGE_VAL for the others. `count` is at most PVT_MOST_WEIGHED.

@@ -25,7 +25,11 @@ static int GetStartCount(const pvtBuild* build)
 {
     static const int counts[] = {
         [PVT_EFFORT_FAST] = 1, [PVT_EFFORT_DEFAULT] = 3, [PVT_EFFORT_BEST] = PVT_MOST_STARTS};
-    return pvtMayAscend(build) ? counts[build->options->effort] : 1;
+    // Within a band a third one gains nothing.
+    static const int inBand[] = {
+        [PVT_EFFORT_FAST] = 1, [PVT_EFFORT_DEFAULT] = 2, [PVT_EFFORT_BEST] = PVT_MOST_STARTS};
+    const pvtEffort effort = build->options->effort;
+    return !pvtMayAscend(build) ? 1 : build->isBand ? inBand[effort] : counts[effort];
 }
 
 // A cut within `budget`, and with `surplus` more triangles another one, over at most so many views.

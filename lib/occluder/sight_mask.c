@@ -202,6 +202,26 @@ void pvtSumMissing(const pvtSightMask* missing, uint16_t (*restrict sums)[PVT_SI
     }
 }
 
+PVT_VECTOR_CLONES
+void pvtSumOpen(const pvtSightMask* mask, uint16_t (*restrict sums)[PVT_SIGHT_STRIDE])
+{
+    memset(sums[0], 0, sizeof sums[0]);
+    for (int y = 0; y < CELLS; ++y) {
+        uint16_t sum = 0;
+        sums[y + 1][0] = 0;
+        for (int x = 0; x < CELLS; x += 8) {
+            const uint64_t* rows = mask->words[x / 32] + 2 * (size_t)y;
+            const int shift = 2 * x % 64;
+            const uint64_t counts =
+                CountPairs(~rows[0] >> shift & 0xFFFF) + CountPairs(~rows[1] >> shift & 0xFFFF);
+            for (int i = 0; i < 8; ++i) {
+                sum = (uint16_t)(sum + (counts >> (8 * i) & 0xFF));
+                sums[y + 1][x + i + 1] = (uint16_t)(sums[y][x + i + 1] + sum);
+            }
+        }
+    }
+}
+
 double pvtSumWorths(const pvtSightSet* sights, const pvtSight* sight, const pvtSightMask* missing,
                     float softness)
 {

@@ -22,6 +22,9 @@ pvtSightRows pvtDrawSightTriangle(const pvtTriangleSet* set, float (*places)[2],
 /// sums[y][x]: pixels in the cells left of x and below y (PVT_SIGHT_ENDS of each).
 void pvtSumMissing(const pvtSightMask* missing, uint16_t (*restrict sums)[PVT_SIGHT_STRIDE]);
 
+/// The same of the pixels that are not set.
+void pvtSumOpen(const pvtSightMask* mask, uint16_t (*restrict sums)[PVT_SIGHT_STRIDE]);
+
 static inline unsigned pvtCountMissing(uint16_t (*sums)[PVT_SIGHT_STRIDE], const pvtSightQuad* quad)
 {
     return (unsigned)(sums[quad->y1][quad->x1] - sums[quad->y0][quad->x1] -

@@ -3,8 +3,9 @@
 // area tells: so when a cell is drawn first, by how many rectangles hold it, and then one of these,
 // each comes up as often as it should. Of those that hold a cell only such are drawn as are no
 // wider than what is set left and right of it, and no higher than what is set above and below: few
-// of them are not within the goal, however thin it is.
-#include "sights.h"
+// of them are not within the goal, however thin it is. Those that reach beyond the goal are drawn
+// in the same way within a wider one.
+#include "sight_mask.h"
 
 #include "base/bits.h"
 
@@ -127,6 +128,81 @@ size_t pvtDrawSightQuads(const uint64_t rows[CELLS], int draws, pvtRandom* rando
     for (int i = 0; i < draws; ++i) {
         quads[count] = DrawQuad(&cells, random);
         count += IsWithin(rows, &quads[count]) ? 1 : 0;
+    }
+    return count;
+}
+
+// Bits 0, 2, 4, ... of a word, next to each other.
+static uint64_t PackEven(uint64_t bits)
+{
+    bits &= UINT64_C(0x5555555555555555);
+    bits = (bits | bits >> 1) & UINT64_C(0x3333333333333333);
+    bits = (bits | bits >> 2) & UINT64_C(0x0F0F0F0F0F0F0F0F);
+    bits = (bits | bits >> 4) & UINT64_C(0x00FF00FF00FF00FF);
+    bits = (bits | bits >> 8) & UINT64_C(0x0000FFFF0000FFFF);
+    return (bits | bits >> 16) & UINT64_C(0x00000000FFFFFFFF);
+}
+
+void pvtFindWholeCells(const pvtSightMask* mask, uint64_t cells[CELLS])
+{
+    for (int y = 0; y < CELLS; ++y) {
+        cells[y] = 0;
+        for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
+            const uint64_t both = mask->words[half][2 * y] & mask->words[half][2 * y + 1];
+            cells[y] |= PackEven(both & both >> 1) << (32 * half);
+        }
+    }
+}
+
+// Cells that the goal has a pixel of, and `ring` more around them.
+static void FindNearCells(const pvtSightMask* goal, int ring, uint64_t cells[CELLS])
+{
+    for (int y = 0; y < CELLS; ++y) {
+        cells[y] = 0;
+        for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
+            const uint64_t either = goal->words[half][2 * y] | goal->words[half][2 * y + 1];
+            cells[y] |= PackEven(either | either >> 1) << (32 * half);
+        }
+    }
+    for (int i = 0; i < ring; ++i) {
+        uint64_t below = 0;
+        for (int y = 0; y < CELLS; ++y) {
+            const uint64_t here = cells[y];
+            const uint64_t all = below | here | (y + 1 < CELLS ? cells[y + 1] : 0);
+            cells[y] = all | all << 1 | all >> 1;
+            below = here;
+        }
+    }
+}
+
+size_t pvtDrawWrongQuads(const pvtSightMask* goal, int ring, int draws, pvtRandom* random,
+                         pvtWrongQuad* wrongs)
+{
+    Cells cells;
+    uint64_t whole[CELLS];
+    pvtFindWholeCells(goal, whole);
+    memcpy(cells.rows, whole, sizeof whole);
+    FindReaches(&cells);
+    SumRectangles(&cells);
+    const double within = (double)cells.sums[CELLS];
+    if (within == 0.0) {
+        return 0;
+    }
+    FindNearCells(goal, ring, cells.rows);
+    FindReaches(&cells);
+    SumRectangles(&cells);
+    // What one that is drawn stands for, where of those within the goal as many are.
+    const double each = (double)cells.sums[CELLS] / within;
+    uint16_t sums[PVT_SIGHT_ENDS][PVT_SIGHT_STRIDE];
+    pvtSumOpen(goal, sums);
+    size_t count = 0;
+    for (int i = 0; i < draws; ++i) {
+        const pvtSightQuad quad = DrawQuad(&cells, random);
+        if (IsWithin(cells.rows, &quad) && !IsWithin(whole, &quad)) {
+            const double pixels = 4.0 * (quad.x1 - quad.x0) * (quad.y1 - quad.y0);
+            const double beyond = pvtCountMissing(sums, &quad);
+            wrongs[count++] = (pvtWrongQuad){quad, (float)(each * beyond / pixels)};
+        }
     }
     return count;
 }

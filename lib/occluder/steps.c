@@ -37,23 +37,30 @@ static void FreeCandidates(pvtContext* context, pvtBuild* build)
     pvtCandidateSet_Free(context, &build->candidates);
 }
 
-void pvtBuild_Free(pvtContext* context, pvtBuild* build)
+void pvtBuild_FreeSelection(pvtContext* context, pvtBuild* build)
 {
     if (build->hasSlicer && build->options->releaseSlicer != NULL) {
         build->options->releaseSlicer(context, build->options->slicerUser, &build->slicer);
     }
+    build->hasSlicer = false;
+    FreeCandidates(context, build);
+    pvtViewSet_Free(context, &build->views);
+    pvtOccluder_Free(context, &build->occluder);
+    pvtOccluder_Free(context, &build->flat);
+    build->startCount = 0;
+}
+
+void pvtBuild_Free(pvtContext* context, pvtBuild* build)
+{
+    pvtBuild_FreeSelection(context, build);
     pvtBitGrid_Free(context, &build->surface);
     pvtSolid_Free(context, &build->solid);
     pvtBitGrid_Free(context, &build->allowed);
     pvtCellGrid_Free(context, &build->cells);
     pvtTouching_Free(context, &build->touching);
     pvtInsideTest_Free(context, &build->inside);
-    FreeCandidates(context, build);
     pvtSheetSet_Free(context, &build->sheets);
     pvtBitGrid_Free(context, &build->hiding);
-    pvtViewSet_Free(context, &build->views);
-    pvtOccluder_Free(context, &build->occluder);
-    pvtOccluder_Free(context, &build->flat);
 }
 
 static double ToWorld(pvtLength length, double voxelSize)
@@ -159,7 +166,9 @@ pvtStatus pvtVoxelizeStep(pvtContext* context, pvtBuild* build)
 {
     pvtVoxelizeOptions options = pvtDefaultVoxelizeOptions();
     options.voxelSize = build->stats.voxelSize;
-    options.padding = build->stats.tolerance;
+    // And a voxel more: what lies beyond a grid is not known to be outside of what is allowed.
+    const double tolerance = build->stats.tolerance;
+    options.padding = tolerance > 0.0 ? tolerance + build->stats.voxelSize : 0.0;
     return pvtVoxelizeMesh(context, &options, build->mesh, &build->surface);
 }
 

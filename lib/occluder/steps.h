@@ -12,13 +12,15 @@ enum { PVT_MOST_STARTS = 4 }; ///< of an ascent
 /// How triangles are to lie around a surface that has no inside and is not flat. What that gives is
 /// judged when it is made; should too much of what it hides be seen, the build begins again.
 typedef struct pvtBandPlan {
-    double reach;    ///< [wu] from the touched voxels; 0 before it is known
-    bool isClose;    ///< what is beside the surface's outline is not free, either
-    bool isHard;     ///< and what is beyond it costs ten times as much
-    bool isOff;      ///< none is good enough
-    bool isBare;     ///< there is an inside, but not behind much of the surface
-    int resolution;  ///< that nothing is inside at
-    bool wantsAgain; ///< another one is to be made
+    double reach;       ///< [wu] from the touched voxels; 0 before it is known
+    double mostWrong;   ///< as pvtAscentOptions tells; 0 before one was not good enough
+    int tries;          ///< that were not
+    double sheetRecall; ///< 0 to 1: of panels on the surface instead, before they are refined
+    bool isOff;         ///< none is good enough
+    bool isBare;        ///< there is an inside, but not behind much of the surface
+    bool isThin;        ///< there is one, but triangles strictly within it hide next to nothing
+    int resolution;     ///< that nothing is inside at
+    bool wantsAgain;    ///< another one is to be made
 } pvtBandPlan;
 
 /// What a build holds on its way; one place to free it.
@@ -66,11 +68,15 @@ pvtStatus pvtBandStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSearchStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtChainStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtSelectStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtThinStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtAscendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtJudgeBandStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
+
+/// What was selected, and what that was made of.
+void pvtBuild_FreeSelection(pvtContext* context, pvtBuild* build);
 
 /// From the voxels' size, the tolerance and the holes that close.
 void pvtSetErrorBound(pvtBuildStats* stats);
@@ -107,6 +113,8 @@ static inline bool pvtIsMeasured(const pvtBuild* build)
 {
     return build->stats.tolerance == 0.0 && !build->options->terrain;
 }
+/// What of all that triangles hide may be wrong, as they climb within a band, 0 to 1; 0 elsewhere.
+double pvtGetMostWrong(const pvtBuild* build);
 /// How many triangles may at most, of the budget.
 int pvtGetAscentBudget(const pvtBuild* build);
 /// Where triangles may lie.

@@ -1,62 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "voxel_shapes.h"
+#include "lesson.h"
 
 #include "base/vector.h"
 #include "occluder/ascent.h"
 #include "occluder/ascent_state.h"
-#include "occluder/beyond.h"
 #include "occluder/contacts.h"
 #include "occluder/crossing.h"
-#include "occluder/pull.h"
-
-enum { SIDE = 48 };
-
-static const float CENTER = SIDE / 2.0F, RADIUS = SIDE / 2.0F - 4.0F;
-
-static float RollFloat(pvtRandom* random, float low, float high)
-{
-    return low + (high - low) * (float)pvtRandom_Unit(random);
-}
-
-// A ball that leaves four voxels free on each side, in a frame in which voxels are 1 wu.
-static void MakeBall(pvtContext* context, pvtBitGrid* grid)
-{
-    MakeEmptyGrid(context, SIDE, SIDE, SIDE, grid);
-    SetBall(grid, (pvtVec3){CENTER, CENTER, CENTER}, RADIUS);
-}
-
-static void RollCorner(pvtRandom* random, float reach, float corner[3])
-{
-    for (int axis = 0; axis < 3; ++axis) {
-        corner[axis] = RollFloat(random, CENTER - reach, CENTER + reach);
-    }
-}
-
-// Triangles with corners of their own, within a cube.
-static void RollTriangles(pvtContext* context, int count, float reach, pvtTriangleSet* set)
-{
-    pvtRandom random = pvtMakeRandom(17, 4);
-    CHECK_OK(context, pvtCreateTriangleSet(context, 3 * count, count, set));
-    for (int t = 0; t < count; ++t) {
-        uint32_t corners[3];
-        for (int k = 0; k < 3; ++k) {
-            float corner[3];
-            RollCorner(&random, reach, corner);
-            corners[k] = pvtTriangleSet_AddCorner(set, corner, false);
-        }
-        pvtTriangleSet_AddTriangle(set, corners, t);
-    }
-    pvtTriangleSet_FindEdges(set);
-}
-
-static float GetDistance(const float point[3])
-{
-    float sum = 0.0F;
-    for (int axis = 0; axis < 3; ++axis) {
-        sum += (point[axis] - CENTER) * (point[axis] - CENTER);
-    }
-    return sqrtf(sum);
-}
 
 static void the_field_of_a_ball_is_its_depth(void** state)
 {
@@ -92,174 +41,6 @@ static void the_field_of_a_ball_is_its_depth(void** state)
     DestroyTestContext(context);
 }
 
-typedef struct Lesson {
-    pvtBitGrid grid;
-    pvtField field;
-    pvtSightSet sights;
-    pvtTriangleSet set;
-    pvtPuller puller;
-} Lesson;
-
-static void MakeLesson(pvtContext* context, int triangles, float reach, Lesson* lesson)
-{
-    MakeBall(context, &lesson->grid);
-    CHECK_OK(context, pvtCreateField(context, &lesson->grid, NULL, 64, &lesson->field));
-    const pvtViewOptions views = pvtDefaultViewOptions();
-    const pvtSightOptions options = {.views = &views, .count = 64, .quads = 400, .seed = 1};
-    CHECK_OK(context, pvtCreateSights(context, &options, &lesson->field, &lesson->sights));
-    RollTriangles(context, triangles, reach, &lesson->set);
-    CHECK_OK(context, pvtCreatePuller(context, &lesson->sights, &lesson->set, &lesson->puller));
-}
-
-static void FreeLesson(pvtContext* context, Lesson* lesson)
-{
-    pvtPuller_Free(context, &lesson->puller);
-    pvtTriangleSet_Free(context, &lesson->set);
-    pvtSightSet_Free(context, &lesson->sights);
-    pvtField_Free(context, &lesson->field);
-    pvtBitGrid_Free(context, &lesson->grid);
-}
-
-static void following_the_pull_hides_more(void** state)
-{
-    (void)state;
-    pvtContext* context = CreateTestContext(2);
-    Lesson lesson;
-    MakeLesson(context, 10, 9.0F, &lesson);
-    const pvtPullOptions options = {.count = 64, .softness = 20.0F, .wantsEdges = true};
-    double before = 0.0;
-    for (int step = 0; step < 20; ++step) {
-        pvtPullCorners(context, &options, &lesson.puller);
-        assert_true(lesson.puller.share > before);
-        before = lesson.puller.share;
-        double most = 0.0;
-        for (int c = 0; c < lesson.set.cornerCount; ++c) {
-            for (int axis = 0; axis < 3; ++axis) {
-                most = fmax(most, fabs((double)lesson.puller.corners[c][axis]));
-            }
-        }
-        assert_true(most > 0.0);
-        for (int c = 0; c < lesson.set.cornerCount; ++c) {
-            for (int axis = 0; axis < 3; ++axis) {
-                lesson.set.corners[c][axis] += lesson.puller.corners[c][axis] / (float)most;
-            }
-        }
-    }
-    FreeLesson(context, &lesson);
-    DestroyTestContext(context);
-}
-
-static bool HasPixel(const pvtSightMask* mask, int x, int y)
-{
-    return x >= 0 && y >= 0 && x < PVT_SIGHT_SIZE && y < PVT_SIGHT_SIZE &&
-           pvtGetBit(&mask->words[x / 64][y], (size_t)x % 64);
-}
-
-static int CountAround(const pvtSightMask* mask, int x, int y, int width)
-{
-    int count = 0;
-    for (int i = 0; i < width * width; ++i) {
-        count += HasPixel(mask, x + i % width, y + i / width) ? 1 : 0;
-    }
-    return count;
-}
-
-static void cells_away_from_the_goal_are_beyond_it(void** state)
-{
-    (void)state;
-    pvtContext* context = CreateTestContext(2);
-    Lesson lesson;
-    MakeLesson(context, 1, RADIUS, &lesson);
-    pvtSightMask goals[2] = {lesson.sights.sights[0].goal, {{{0}}}};
-    pvtRandom random = pvtMakeRandom(8, 3);
-    for (int i = 0; i < 90; ++i) {
-        const size_t x = pvtRandom_Below(&random, PVT_SIGHT_SIZE);
-        pvtSetBit(&goals[1].words[x / 64][pvtRandom_Below(&random, PVT_SIGHT_SIZE)], x % 64);
-    }
-    for (int g = 0; g < 4; ++g) {
-        const pvtSightMask* goal = &goals[g / 2];
-        const int ring = g % 2 == 0 ? 1 : 0;
-        pvtSightMask beyond;
-        pvtFindBeyond(goal, ring == 0, &beyond);
-        int all = 0, out = 0;
-        for (int i = 0; i < PVT_SIGHT_CELLS * PVT_SIGHT_CELLS; ++i) {
-            const int x = 2 * (i % PVT_SIGHT_CELLS), y = 2 * (i / PVT_SIGHT_CELLS);
-            const bool isBeyond = CountAround(goal, x - ring, y - ring, 2 + 2 * ring) == 0;
-            assert_int_equal(CountAround(&beyond, x, y, 2), isBeyond ? 4 : 0);
-            out += isBeyond ? 4 : 0;
-            all += CountAround(goal, x, y, 2);
-        }
-        assert_true(out > 0 && all > 0);
-        CHECK_NEAR(pvtGetCostBeyond(goal, &beyond, &beyond), 20.0 * out / all, 1e-9);
-        assert_true(pvtGetCostBeyond(goal, &beyond, goal) == 0.0);
-    }
-    FreeLesson(context, &lesson);
-    DestroyTestContext(context);
-}
-
-// It hides all of the ball, so that nothing else pulls.
-static void what_reaches_beyond_the_goal_is_pulled_back(void** state)
-{
-    (void)state;
-    pvtContext* context = CreateTestContext(2);
-    Lesson lesson;
-    MakeLesson(context, 1, RADIUS, &lesson);
-    for (int k = 0; k < 3; ++k) {
-        const float angle = 2.1F * (float)k, reach = 3.0F * RADIUS;
-        lesson.set.corners[k][0] = CENTER;
-        lesson.set.corners[k][1] = CENTER + reach * cosf(angle);
-        lesson.set.corners[k][2] = CENTER + reach * sinf(angle);
-    }
-    for (size_t s = 0; s < lesson.sights.count; ++s) {
-        // From the side it is an edge, and hides little.
-        const pvtSight* sight = &lesson.sights.sights[s];
-        const float* r = sight->right;
-        const float* u = sight->up;
-        const float facing = fabsf(r[1] * u[2] - r[2] * u[1]) * sight->pixelSize * sight->pixelSize;
-        lesson.sights.sights[s].weight *= facing > 0.9F ? 1.0F : 0.0F;
-    }
-    pvtPullOptions options = {.count = 64, .softness = 20.0F};
-    pvtPullCorners(context, &options, &lesson.puller);
-    assert_true(lesson.puller.share > 0.999);
-    for (int c = 0; c < 3; ++c) {
-        assert_true(lesson.puller.corners[c][1] == 0.0F && lesson.puller.corners[c][2] == 0.0F);
-    }
-    options.beyond = (pvtBeyondRule){.counts = true, .penalty = 0.5F};
-    pvtPullCorners(context, &options, &lesson.puller);
-    assert_true(lesson.puller.share > 0.999); // what edges are pulled by is as without
-    for (int c = 0; c < 3; ++c) {
-        const float* pull = lesson.puller.corners[c];
-        const float* corner = lesson.set.corners[c];
-        assert_true(pull[1] * (corner[1] - CENTER) + pull[2] * (corner[2] - CENTER) < 0.0F);
-    }
-    options.wantsNoPulls = true;
-    pvtPullCorners(context, &options, &lesson.puller);
-    assert_true(lesson.puller.share < 0.0);
-    FreeLesson(context, &lesson);
-    DestroyTestContext(context);
-}
-
-static void what_another_covers_as_well_is_worth_nothing_alone(void** state)
-{
-    (void)state;
-    pvtContext* context = CreateTestContext(2);
-    Lesson lesson;
-    MakeLesson(context, 6, 12.0F, &lesson);
-    // Triangle 3 becomes a copy of triangle 1.
-    memcpy(lesson.set.triangles[3], lesson.set.triangles[1], sizeof lesson.set.triangles[3]);
-    pvtTriangleSet_FindEdges(&lesson.set);
-    const pvtPullOptions options = {.count = PVT_MOST_WEIGHED, .softness = 10.0F};
-    pvtWeighTriangles(context, &options, &lesson.puller);
-    assert_true(lesson.puller.triangles[1] == 0.0 && lesson.puller.triangles[3] == 0.0);
-    assert_true(pvtArePartners(&lesson.puller, 1, 3));
-    for (int t = 0; t < 6; ++t) {
-        assert_true(t == 1 || t == 3 || lesson.puller.triangles[t] > 0.0);
-    }
-    FreeLesson(context, &lesson);
-    DestroyTestContext(context);
-}
-
-// All over the triangles, not only where contacts were.
 static void CheckDepths(const Lesson* lesson, float least)
 {
     pvtRandom random = pvtMakeRandom(31, 5);
@@ -301,22 +82,6 @@ static void one_look_tells_less_than_all(void** state)
     }
     assert_true(balls > 50);
     pvtInsideTest_Free(context, &inside);
-    FreeLesson(context, &lesson);
-    DestroyTestContext(context);
-}
-
-static void a_share_is_the_same_with_pulls_and_without(void** state)
-{
-    (void)state;
-    pvtContext* context = CreateTestContext(2);
-    Lesson lesson;
-    MakeLesson(context, 8, 12.0F, &lesson);
-    pvtPullOptions options = {.count = 64, .softness = 2.0F};
-    pvtPullCorners(context, &options, &lesson.puller);
-    const double share = lesson.puller.share;
-    options.wantsNoPulls = true;
-    pvtPullCorners(context, &options, &lesson.puller);
-    assert_true(share > 0.0 && share == lesson.puller.share);
     FreeLesson(context, &lesson);
     DestroyTestContext(context);
 }
@@ -665,12 +430,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_field_of_a_ball_is_its_depth),
-        cmocka_unit_test(following_the_pull_hides_more),
-        cmocka_unit_test(cells_away_from_the_goal_are_beyond_it),
-        cmocka_unit_test(what_reaches_beyond_the_goal_is_pulled_back),
-        cmocka_unit_test(what_another_covers_as_well_is_worth_nothing_alone),
         cmocka_unit_test(one_look_tells_less_than_all),
-        cmocka_unit_test(a_share_is_the_same_with_pulls_and_without),
         cmocka_unit_test(contacts_bring_triangles_inside_and_keep_them_there),
         cmocka_unit_test(no_triangle_grows_from_fixed_corners),
         cmocka_unit_test(triangles_cross_where_they_pass_through_each_other),

@@ -115,7 +115,7 @@ static void hills_without_an_inside_are_hidden_behind_nearly_as_well(void** stat
     assert_non_null(strstr(warnings.text, "triangles may stray from it by"));
     const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, occluder, 64);
     assert_true(score.recall > 0.9);
-    assert_true(score.precision > 0.998);
+    assert_true(score.precision > 0.9988);
     FreeOutcome(context, &outcome);
     DestroyTestContext(context);
 }
@@ -129,6 +129,7 @@ static void more_triangles_stray_no_farther(void** state)
     for (int i = 0; i < 3; ++i) {
         pvtBuildOptions options = GetQuickOptions();
         options.budget = budgets[i];
+        options.resolution = 64;
         Outcome outcome = Build(context, MakeHills, &options);
         assert_true(outcome.stats.outside == 0);
         tolerances[i] = outcome.stats.tolerance;
@@ -321,7 +322,7 @@ static void a_band_is_too_narrow_to_close_gaps(void** state)
     assert_true(outcome.stats.tolerance < 3.0 * outcome.stats.voxelSize);
     assert_true(GetFarthest(&outcome.occluder.mesh, &outcome.mesh) <= outcome.stats.errorBound);
     const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 256);
-    assert_true(score.precision > 0.9985);
+    assert_true(score.precision > 0.9988);
     FreeOutcome(context, &outcome);
     DestroyTestContext(context);
 }
@@ -371,7 +372,54 @@ static void what_has_an_inside_in_a_small_part_has_a_band_as_well(void** state)
     assert_non_null(strstr(warnings.text, "much of the surface has no inside behind it"));
     const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 256);
     assert_true(score.recall > 0.8);
-    assert_true(score.precision > 0.9985);
+    assert_true(score.precision > 0.9988);
+    FreeOutcome(context, &outcome);
+    DestroyTestContext(context);
+}
+
+// A bowl with a wall of two and a half voxels: nearly a voxel of it is strictly inside, but so
+// curved that triangles in there are small.
+static void MakeBowl(pvtContext* context, pvtMesh* mesh)
+{
+    enum { STEPS = 24, SIDE = STEPS + 1, LAYER = SIDE * SIDE, CORNERS = 2 * LAYER };
+    pvtVec3 positions[CORNERS];
+    uint32_t indices[12 * STEPS * STEPS + 6 * STEPS];
+    size_t count = 0;
+    for (uint32_t i = 0; i < CORNERS; ++i) {
+        const double radius = i < LAYER ? 1.0 : 0.96;
+        const double around = 2.0 * M_PI * (i % SIDE) / STEPS;
+        const double down = -0.5 * M_PI * (i / SIDE % SIDE) / STEPS;
+        positions[i] = (pvtVec3){radius * cos(around) * cos(down), radius * sin(down),
+                                 radius * sin(around) * cos(down)};
+        if (i % SIDE < STEPS && i / SIDE % SIDE < STEPS) {
+            AddQuad(indices, &count, (uint32_t[4]){i, i + 1, i + SIDE + 1, i + SIDE});
+        }
+        if (i < STEPS) {
+            AddQuad(indices, &count, (uint32_t[4]){i, i + 1, i + LAYER + 1, i + LAYER});
+        }
+    }
+    CHECK_OK(context, pvtCreateMesh(context, positions, CORNERS, indices, count / 3, mesh));
+}
+
+static void what_is_too_thin_inside_has_a_band_as_well(void** state)
+{
+    (void)state;
+    Warnings warnings;
+    pvtContext* context = CreateWarningContext(&warnings);
+    pvtBuildOptions options = GetQuickOptions();
+    Outcome outcome = Build(context, MakeBowl, &options);
+    assert_true(outcome.stats.tolerance == 0.0); // where time is short it stays strict
+    FreeOutcome(context, &outcome);
+    options.effort = PVT_EFFORT_DEFAULT;
+    outcome = Build(context, MakeBowl, &options);
+    assert_true(outcome.stats.outside == 0);
+    assert_true(outcome.stats.insideFraction > 0.0);
+    assert_true(outcome.stats.tolerance > 0.0);
+    assert_true(GetFarthest(&outcome.occluder.mesh, &outcome.mesh) <= outcome.stats.errorBound);
+    assert_non_null(strstr(warnings.text, "what fits inside hides next to nothing"));
+    const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 256);
+    assert_true(score.recall > 0.9);
+    assert_true(score.precision > 0.9988);
     FreeOutcome(context, &outcome);
     DestroyTestContext(context);
 }
@@ -410,6 +458,7 @@ int main(void)
         cmocka_unit_test(a_curved_shell_is_kept_to_its_outline),
         cmocka_unit_test(a_band_is_too_narrow_to_close_gaps),
         cmocka_unit_test(what_has_an_inside_in_a_small_part_has_a_band_as_well),
+        cmocka_unit_test(what_is_too_thin_inside_has_a_band_as_well),
         cmocka_unit_test(the_same_comes_out_on_any_number_of_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

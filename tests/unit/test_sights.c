@@ -2,6 +2,7 @@
 #include "voxel_shapes.h"
 
 #include "base/bits.h"
+#include "base/vector.h"
 #include "occluder/sight_mask.h"
 
 enum { SIDE = 48 };
@@ -44,6 +45,10 @@ static void sums_of_cells_count_pixels(void** state)
             quad.x1 = (uint8_t)(quad.x0 + 1 + pvtRandom_Below(&random, PVT_SIGHT_CELLS - quad.x0));
             quad.y1 = (uint8_t)(quad.y0 + 1 + pvtRandom_Below(&random, PVT_SIGHT_CELLS - quad.y0));
             assert_int_equal(pvtCountMissing(sums, &quad), CountPixels(&mask, &quad));
+            uint16_t open[PVT_SIGHT_ENDS][PVT_SIGHT_STRIDE];
+            pvtSumOpen(&mask, open);
+            const int all = 4 * (quad.x1 - quad.x0) * (quad.y1 - quad.y0);
+            assert_int_equal(pvtCountMissing(open, &quad), all - CountPixels(&mask, &quad));
         }
     }
 }
@@ -94,6 +99,49 @@ static void rectangles_come_up_as_often_as_they_are_large(void** state)
     rows[0] = rows[1] = rows[2] = rows[3] = 0;
     assert_int_equal(pvtDrawSightQuads(rows, DRAWS, &random, quads, &weight), 0);
     assert_true(weight == 0.0);
+}
+
+// Four by three cells with a pixel more on the right: what rectangles that are drawn count is what
+// all of them do, each by its pixels beyond the goal.
+static void rectangles_that_reach_too_far_count_by_what_is_beyond(void** state)
+{
+    (void)state;
+    enum { LEFT = 20, LOW = 30, WIDE = 4, HIGH = 3, RING = 2, DRAWS = 200000 };
+    pvtSightMask goal = {0};
+    for (unsigned y = 2 * LOW; y < 2 * (LOW + HIGH); ++y) {
+        goal.words[0][y] |= pvtMakeMask(2 * LEFT, 2 * (LEFT + WIDE));
+    }
+    goal.words[0][2 * LOW] |= UINT64_C(1) << (2 * (LEFT + WIDE));
+    double right = 0.0, wrong = 0.0;
+    for (int x0 = LEFT - RING; x0 <= LEFT + WIDE + RING; ++x0) {
+        for (int x1 = x0 + 1; x1 <= LEFT + WIDE + 1 + RING; ++x1) {
+            for (int y0 = LOW - RING; y0 < LOW + HIGH + RING; ++y0) {
+                for (int y1 = y0 + 1; y1 <= LOW + HIGH + RING; ++y1) {
+                    // Right of the cell of one pixel the ring is as high as around that.
+                    const bool isNear = x1 <= LEFT + WIDE + RING || y1 <= LOW + 1 + RING;
+                    const pvtSightQuad quad = {(uint8_t)x0, (uint8_t)y0, (uint8_t)x1, (uint8_t)y1};
+                    const int pixels = 4 * (x1 - x0) * (y1 - y0);
+                    const int beyond = pixels - CountPixels(&goal, &quad);
+                    right += beyond == 0 ? pixels : 0.0;
+                    wrong += isNear ? beyond : 0.0;
+                }
+            }
+        }
+    }
+    static pvtWrongQuad wrongs[DRAWS];
+    pvtRandom random = pvtMakeRandom(5, 9);
+    const size_t count = pvtDrawWrongQuads(&goal, RING, DRAWS, &random, wrongs);
+    double sum = 0.0;
+    for (size_t q = 0; q < count; ++q) {
+        assert_true(CountPixels(&goal, &wrongs[q].quad) <
+                    4 * (wrongs[q].quad.x1 - wrongs[q].quad.x0) *
+                        (wrongs[q].quad.y1 - wrongs[q].quad.y0));
+        sum += (double)wrongs[q].weight;
+    }
+    // Of those within the goal, a block, all that are drawn would be kept.
+    CHECK_NEAR(sum / DRAWS / (wrong / right), 1.0, 0.02);
+    const pvtSightMask nothing = {0};
+    assert_int_equal(pvtDrawWrongQuads(&nothing, RING, DRAWS, &random, wrongs), 0);
 }
 
 // Left of all three edges, or right of all; 0 when that may be rounded away.
@@ -185,6 +233,50 @@ static void sights_see_a_disc_and_draw_their_rectangles_within_it(void** state)
     DestroyTestContext(context);
 }
 
+static void sights_of_a_mesh_show_its_pixels(void** state)
+{
+    (void)state;
+    pvtContext* context = CreateTestContext(3);
+    const pvtGridFrame frame = {{-3.0, 2.0, 1.0}, 0.25, {SIDE, SIDE, SIDE}};
+    const pvtVec3 positions[] = {{0.0, 4.0, 5.0}, {7.0, 9.0, 4.0}, {2.0, 12.0, 11.0}};
+    const uint32_t indices[] = {0, 1, 2};
+    pvtMesh mesh;
+    CHECK_OK(context, pvtCreateMesh(context, positions, 3, indices, 1, &mesh));
+    const pvtViewOptions views = pvtDefaultViewOptions();
+    const pvtSightOptions options = {
+        .views = &views, .count = 64, .stray = 3.0, .quads = 400, .seed = 1};
+    pvtSightSet sights;
+    CHECK_OK(context, pvtCreateMeshSights(context, &options, &frame, &mesh, &sights));
+    assert_int_equal(sights.count, 64);
+    assert_true(sights.wrongCount > 1000);
+    int covered = 0;
+    for (size_t s = 0; s < sights.count; ++s) {
+        const pvtSight* sight = &sights.sights[s];
+        float places[3][2];
+        for (int k = 0; k < 3; ++k) {
+            const pvtVec3 at = pvtScale(pvtSub(positions[k], frame.origin), 1.0 / frame.voxelSize);
+            const float p[3] = {(float)at.x, (float)at.y, (float)at.z};
+            places[k][0] = sight->x;
+            places[k][1] = sight->y;
+            for (int axis = 0; axis < 3; ++axis) {
+                places[k][0] += p[axis] * sight->right[axis];
+                places[k][1] += p[axis] * sight->up[axis];
+            }
+        }
+        for (int y = 0; y < PVT_SIGHT_SIZE; ++y) {
+            for (int x = 0; x < PVT_SIGHT_SIZE; ++x) {
+                const int side = FindSide(places, (float)x + 0.5F, (float)y + 0.5F);
+                assert_true(side == 0 || HasPixel(&sight->goal, x, y) == (side > 0));
+                covered += side > 0 ? 1 : 0;
+            }
+        }
+    }
+    assert_true(covered > 50000);
+    pvtSightSet_Free(context, &sights);
+    pvtMesh_Free(context, &mesh);
+    DestroyTestContext(context);
+}
+
 // Plates a voxel thick and a voxel apart, of 72 voxels: all of it is border. A block has much less,
 // however many of its nodes there are.
 static void what_is_full_of_gaps_gets_fewer_sights(void** state)
@@ -222,9 +314,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sights_see_a_disc_and_draw_their_rectangles_within_it),
+        cmocka_unit_test(sights_of_a_mesh_show_its_pixels),
         cmocka_unit_test(what_is_full_of_gaps_gets_fewer_sights),
         cmocka_unit_test(sums_of_cells_count_pixels),
         cmocka_unit_test(rectangles_come_up_as_often_as_they_are_large),
+        cmocka_unit_test(rectangles_that_reach_too_far_count_by_what_is_beyond),
         cmocka_unit_test(triangles_cover_the_pixels_whose_centres_they_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -163,7 +163,8 @@ typedef struct pvtBuildStats {
     int resolution;   ///< [vx] along the longest side, as used
     double voxelSize; ///< [wu]
     double tolerance; ///< [wu] as asked for; or how far triangles may stray from a surface that is
-                      ///< not flat and has no inside, which is told by a warning
+                      ///< not flat and has no inside, or none that would hide anything, which is
+                      ///< told by a warning
     double smallestHole;   ///< [wu]
     double errorBound;     ///< [wu] √3 voxels + max(tolerance, smallestHole / 2): no ray that the
                            ///< occluder blocks passes the original farther away than this
