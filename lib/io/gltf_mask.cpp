@@ -309,7 +309,7 @@ void GltfMasks::WarnOfUnreadable() const
         }
     }
     if (textureless_ > 0) {
-        Warn(file_.job, "%zu masked materials have no texture to be judged by", textureless_);
+        Warn(file_.job, "masked materials without a texture to be judged by: %zu", textureless_);
     }
 }
 

@@ -113,12 +113,12 @@ class Walker
         }
         RefuseUnlessFound();
         if (skinned_ > 0) {
-            Warn(file_.job, "%zu skinned meshes; their bind pose is taken", skinned_);
+            Warn(file_.job, "skinned meshes that are taken in their bind pose: %zu", skinned_);
         }
         if (posed_ > 0) {
             Warn(file_.job,
-                 "%zu skinned meshes stand in another pose than they were bound in; bake the pose "
-                 "in if it is the one that is seen",
+                 "skinned meshes that stand in another pose than they were bound in: %zu; bake the "
+                 "pose in if it is the one that is seen",
                  posed_);
         }
         return std::move(instances_);

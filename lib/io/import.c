@@ -264,8 +264,9 @@ static pvtStatus AddNodes(const Scene* scene, const Placement* places, pvtModelB
 static void WarnOfPoses(const pvtLoadJob* job, const pvtImportHeader* header)
 {
     if (header->skinnedCount > 0) {
-        pvtLog(job->context, PVT_LOG_WARNING, "%s: %zu skinned meshes; their bind pose is taken",
-               job->path, (size_t)header->skinnedCount);
+        pvtLog(job->context, PVT_LOG_WARNING,
+               "%s: skinned meshes that are taken in their bind pose: %zu", job->path,
+               (size_t)header->skinnedCount);
     }
     if (header->morphedCount > 0) {
         pvtLog(job->context, PVT_LOG_WARNING,

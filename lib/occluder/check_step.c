@@ -8,6 +8,7 @@
 #include "base/bits.h"
 #include "base/context.h"
 #include "base/vector.h"
+#include "voxel/outside.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -161,6 +162,10 @@ pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build)
     pvtStatus status = CheckTriangles(context, build);
     if (status == PVT_OK) {
         WarnOfStorage(context, build);
+        // Triangles in a band hide nearly all, and closing what is open would rather do harm.
+        if (!build->isBand) {
+            pvtWarnWhenHollow(context, &build->solid);
+        }
     }
     if (status == PVT_OK) {
         status = pvtMeasureTriangles(context, build, &build->occluder.mesh, &stats->measure);

@@ -6,6 +6,7 @@
 #include "base/vector.h"
 #include "refine.h"
 #include "voxel/bit_grid.h"
+#include "voxel/outside.h"
 
 #include <math.h>
 
@@ -255,7 +256,7 @@ pvtStatus pvtFillStep(pvtContext* context, pvtBuild* build)
     solid.below = build->stats.tolerance > 0.0 ? 0 : 1;
     solid.up = options->up;
     solid.enclosed = options->enclosed;
-    pvtStatus status = pvtFillSolid(context, &solid, &build->surface, &build->solid);
+    pvtStatus status = pvtFillSolidInSilence(context, &solid, &build->surface, &build->solid);
     if (status == PVT_OK) {
         const pvtRemedy* remedy = &build->solid.remedy;
         build->stats.insideFraction = build->solid.insideFraction;

@@ -34,4 +34,9 @@ pvtStatus pvtFindInside(pvtContext* context, const pvtSolidOptions* options,
 pvtStatus pvtFindRemedy(pvtContext* context, const pvtSolidOptions* options,
                         const pvtBitGrid* surface, uint64_t strictCount, pvtRemedy* remedy);
 
+/// pvtFillSolid without its warning, and that.
+pvtStatus pvtFillSolidInSilence(pvtContext* context, const pvtSolidOptions* options,
+                                const pvtBitGrid* surface, pvtSolid* solid);
+void pvtWarnWhenHollow(pvtContext* context, const pvtSolid* solid);
+
 #endif

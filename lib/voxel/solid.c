@@ -77,7 +77,7 @@ static void CountVoxels(pvtSolid* solid)
 }
 
 // Says what would help when the flood found its way in.
-static void WarnWhenHollow(pvtContext* context, const pvtSolid* solid)
+void pvtWarnWhenHollow(pvtContext* context, const pvtSolid* solid)
 {
     const pvtRemedy* remedy = &solid->remedy;
     const double percent = 100.0 * solid->insideFraction;
@@ -111,8 +111,8 @@ static void WarnWhenHollow(pvtContext* context, const pvtSolid* solid)
     }
 }
 
-pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
-                       const pvtBitGrid* surface, pvtSolid* solid)
+pvtStatus pvtFillSolidInSilence(pvtContext* context, const pvtSolidOptions* options,
+                                const pvtBitGrid* surface, pvtSolid* solid)
 {
     *solid = (pvtSolid){0};
     pvtStatus status = CheckOptions(context, options);
@@ -136,7 +136,16 @@ pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
         pvtSolid_Free(context, solid);
         return status;
     }
-    WarnWhenHollow(context, solid);
     pvtReportProgress(context, 1.0);
     return PVT_OK;
+}
+
+pvtStatus pvtFillSolid(pvtContext* context, const pvtSolidOptions* options,
+                       const pvtBitGrid* surface, pvtSolid* solid)
+{
+    const pvtStatus status = pvtFillSolidInSilence(context, options, surface, solid);
+    if (status == PVT_OK) {
+        pvtWarnWhenHollow(context, solid);
+    }
+    return status;
 }

@@ -370,6 +370,7 @@ static void what_has_an_inside_in_a_small_part_has_a_band_as_well(void** state)
     assert_true(outcome.stats.insideFraction > 0.0);
     assert_true(outcome.stats.tolerance > 0.0);
     assert_non_null(strstr(warnings.text, "much of the surface has no inside behind it"));
+    assert_null(strstr(warnings.text, "the solid is hollow"));
     const pvtQuadScore score = ScoreUniform(context, &outcome.mesh, &outcome.occluder.mesh, 256);
     assert_true(score.recall > 0.8);
     assert_true(score.precision > 0.9988);

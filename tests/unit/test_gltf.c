@@ -414,7 +414,8 @@ static void materials_that_let_light_through_are_left_out(void** state)
     f->options.masked = PVT_MASKED_AUTO;
     CHECK_OK(f->context, LoadCube(f, two));
     assert_int_equal(f->model.mesh.triangleCount, 12);
-    assert_non_null(strstr(f->warnings.text, "1 masked materials have no texture"));
+    assert_non_null(
+        strstr(f->warnings.text, "masked materials without a texture to be judged by: 1"));
     assert_non_null(strstr(f->warnings.text, "--masked opaque"));
 
     f->options.masked = PVT_MASKED_SKIP;
@@ -445,7 +446,7 @@ static void skins_and_morphs_give_the_bind_pose_with_a_warning(void** state)
     CHECK_OK(f->context, LoadGlb(f, json, &pack));
     // Twice as large by the root; what the mesh's own node says does not count.
     CheckBounds(&f->model.mesh, (pvtVec3){0, 0, 0}, (pvtVec3){2, 2, 2}, 1e-12);
-    assert_non_null(strstr(f->warnings.text, "1 skinned"));
+    assert_non_null(strstr(f->warnings.text, "bind pose: 1"));
     assert_non_null(strstr(f->warnings.text, "morph"));
 }
 
@@ -473,13 +474,14 @@ static void a_skin_stands_where_the_joint_nearest_to_the_root_puts_it(void** sta
     (void)snprintf(posed, sizeof posed, json, 1);
     CHECK_OK(f->context, LoadGlb(f, posed, &pack));
     CheckBounds(&f->model.mesh, (pvtVec3){10, 0, 0}, (pvtVec3){11, 1, 1}, 1e-12);
-    assert_non_null(strstr(f->warnings.text, "1 skinned meshes; their bind pose is taken"));
+    assert_non_null(
+        strstr(f->warnings.text, "skinned meshes that are taken in their bind pose: 1"));
     assert_null(strstr(f->warnings.text, "another pose"));
     // The knee elsewhere: the bind pose all the same, with another warning.
     (void)snprintf(posed, sizeof posed, json, 3);
     CHECK_OK(f->context, LoadGlb(f, posed, &pack));
     CheckBounds(&f->model.mesh, (pvtVec3){10, 0, 0}, (pvtVec3){11, 1, 1}, 1e-12);
-    assert_non_null(strstr(f->warnings.text, "1 skinned meshes stand in another pose"));
+    assert_non_null(strstr(f->warnings.text, "stand in another pose than they were bound in: 1"));
 }
 
 static void integers_written_as_fractions_are_read(void** state)

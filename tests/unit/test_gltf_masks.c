@@ -391,7 +391,8 @@ static void a_mask_without_a_texture_is_left_out(void** state)
     for (size_t i = 0; i < sizeof materials / sizeof *materials; ++i) {
         const Card card = {.attributes = "'COLOR_0':5", .material = materials[i]};
         CheckRefused(f, LoadCard(f, &card), PVT_INVALID_INPUT, "--masked opaque");
-        assert_non_null(strstr(f->warnings.text, "1 masked materials have no texture"));
+        assert_non_null(
+            strstr(f->warnings.text, "masked materials without a texture to be judged by: 1"));
         f->options.masked = PVT_MASKED_OPAQUE;
         CheckArea(f, &card, 1.0);
         f->options.masked = PVT_MASKED_AUTO;
