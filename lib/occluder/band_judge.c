@@ -133,10 +133,30 @@ double pvtGetMostWrong(const pvtBuild* build)
     return build->band.mostWrong > 0.0 ? build->band.mostWrong : FIRST_WRONG;
 }
 
-pvtStatus pvtJudgeBandStep(pvtContext* context, pvtBuild* build)
+// Panels within a voxel of what is as thin as that stand out at its sides.
+static pvtStatus JudgePanels(pvtContext* context, pvtBuild* build)
+{
+    pvtQuadScore score = {0};
+    const pvtStatus status = pvtScoreOccluder(context, build, &build->occluder.mesh, false, &score);
+    if (status != PVT_OK || score.precision >= LEAST_PRECISION) {
+        return status;
+    }
+    if (!build->band.mayStray && HasTime(build)) {
+        build->band = (pvtBandPlan){.isOff = true, .keepsClose = true, .wantsAgain = true};
+    } else {
+        pvtWarnOnce(context,
+                    "parts are thinner than a voxel: %.2g %% of what panels on them hide can be "
+                    "seen; a higher --resolution keeps closer to them",
+                    100.0 * (1.0 - score.precision));
+    }
+    return PVT_OK;
+}
+
+pvtStatus pvtJudgeStep(pvtContext* context, pvtBuild* build)
 {
     if (build->band.reach == 0.0) {
-        return PVT_OK;
+        const bool maySee = pvtMayPanelsStray(build) && build->occluder.mesh.triangleCount > 0;
+        return maySee ? JudgePanels(context, build) : PVT_OK;
     }
     pvtQuadScore score = {0};
     pvtStatus status = PVT_OK;

@@ -40,7 +40,7 @@ static pvtStatus RunSteps(pvtContext* context, pvtBuild* build)
         {"bend", pvtBendStep, &build->stats.seconds.refine},
         // Around a surface triangles may hide what it does not: too much of that, and all begins
         // again with other rules.
-        {"evaluate", pvtJudgeBandStep, &build->stats.seconds.check},
+        {"evaluate", pvtJudgeStep, &build->stats.seconds.check},
         // The promise is checked by other code than that which made it.
         {"check", pvtCheckStep, &build->stats.seconds.check},
     };
@@ -69,6 +69,16 @@ static void BeginAgain(pvtContext* context, const pvtBuildOptions* options, pvtB
     *build = next;
 }
 
+// Whether all begins again: as planned, or where panels close to the surface were none.
+static bool IsToBeginAgain(pvtBuild* build, pvtStatus status)
+{
+    if (status == PVT_NOTHING_INSIDE && build->band.keepsClose) {
+        build->band = (pvtBandPlan){.isOff = true, .mayStray = true};
+        return true;
+    }
+    return status == PVT_OK && build->band.wantsAgain;
+}
+
 pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, const pvtMesh* mesh,
                            pvtOccluder* occluder, pvtBuildStats* stats)
 {
@@ -76,7 +86,7 @@ pvtStatus pvtBuildOccluder(pvtContext* context, const pvtBuildOptions* options, 
     const double started = pvtGetSeconds();
     pvtBuild build = {.options = options, .mesh = mesh, .started = started};
     pvtStatus status = RunSteps(context, &build);
-    while (status == PVT_OK && build.band.wantsAgain) {
+    while (IsToBeginAgain(&build, status)) {
         BeginAgain(context, options, &build);
         status = RunSteps(context, &build);
     }

@@ -78,7 +78,14 @@ static pvtStatus GetShare(pvtContext* context, const pvtBuild* build, double* sh
 // sheets beside it may.
 static double GetMostDeviation(const pvtBuild* build)
 {
-    return pvtBitGrid_Count(&build->allowed) > 0 ? DEVIATIONS[0] : DEVIATIONS[DEVIATION_COUNT - 1];
+    return build->band.keepsClose || pvtBitGrid_Count(&build->allowed) > 0
+               ? DEVIATIONS[0]
+               : DEVIATIONS[DEVIATION_COUNT - 1];
+}
+
+bool pvtMayPanelsStray(const pvtBuild* build)
+{
+    return build->sheets.count > 0 && build->deviation > DEVIATIONS[0];
 }
 
 // Sheets may reach into voxels that they do not pass over wholly.

@@ -15,6 +15,8 @@ typedef struct pvtBandPlan {
     double reach;       ///< [wu] from the touched voxels; 0 before it is known
     double mostWrong;   ///< as pvtAscentOptions tells; 0 before one was not good enough
     int tries;          ///< that were not
+    bool keepsClose;    ///< panels on the surface may not lie off it, as those beside an inside
+    bool mayStray;      ///< there are none like that: they may lie off it, and it is told
     double sheetRecall; ///< 0 to 1: of panels on the surface instead, before they are refined
     bool isOff;         ///< none is good enough
     bool isBare;        ///< there is an inside, but not behind much of the surface
@@ -72,7 +74,7 @@ pvtStatus pvtThinStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtRefineStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtAscendStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtBendStep(pvtContext* context, pvtBuild* build);
-pvtStatus pvtJudgeBandStep(pvtContext* context, pvtBuild* build);
+pvtStatus pvtJudgeStep(pvtContext* context, pvtBuild* build);
 pvtStatus pvtCheckStep(pvtContext* context, pvtBuild* build);
 
 /// What was selected, and what that was made of.
@@ -113,6 +115,9 @@ static inline bool pvtIsMeasured(const pvtBuild* build)
 {
     return build->stats.tolerance == 0.0 && !build->options->terrain;
 }
+/// Whether panels lie on the surface only within a part of a voxel or more: what they hide besides
+/// is nothing on flat walls.
+bool pvtMayPanelsStray(const pvtBuild* build);
 /// What of all that triangles hide may be wrong, as they climb within a band, 0 to 1; 0 elsewhere.
 double pvtGetMostWrong(const pvtBuild* build);
 /// How many triangles may at most, of the budget.

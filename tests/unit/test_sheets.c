@@ -6,6 +6,7 @@
 #include "occluder/sheets.h"
 #include "occluder/steps.h"
 #include "voxel_shapes.h"
+#include "warnings.h"
 
 #include <math.h>
 #include <paravent/evaluate.h>
@@ -213,6 +214,42 @@ static void a_gable_with_a_window_is_covered_up_to_its_slants_and_corners(void**
     assert_true(MeasureArea(&outcome.occluder.mesh) <= 1.0001 * MeasureArea(&mesh));
     pvtOccluder_Free(context, &outcome.occluder);
     pvtMesh_Free(context, &mesh);
+    DestroyTestContext(context);
+}
+
+// A spear: a rod thinner than a voxel with a blade. Panels within a voxel of the rod stand out at
+// its sides, and a tenth of what they hide can be seen; those on the blade do not.
+static void a_rod_thinner_than_a_voxel_hides_nothing_beside_it(void** state)
+{
+    (void)state;
+    enum { SIDES = 8 };
+    Warnings warnings;
+    pvtContext* context = CreateWarningContext(&warnings);
+    const double radius = 0.3 * 8.0 / 64.0;
+    Soup soup = {.count = 0};
+    for (int i = 0; i < SIDES; ++i) {
+        const double a = 2.0 * M_PI * i / SIDES, b = 2.0 * M_PI * (i + 1) / SIDES;
+        const pvtVec3 p = {-4.0, radius * cos(a), radius * sin(a)};
+        const pvtVec3 q = {-4.0, radius * cos(b), radius * sin(b)};
+        const pvtVec3 along = {8.0, 0.3, 0.2};
+        AddQuad(&soup, p, q, pvtAdd(q, along), pvtAdd(p, along));
+    }
+    for (int hasBlade = 0; hasBlade < 2; ++hasBlade) {
+        if (hasBlade) {
+            AddPane(&soup, -4.0, -3.0, -0.4, 0.4);
+        }
+        pvtMesh mesh = MakeMesh(context, &soup);
+        const pvtBuildOptions options = GetQuickOptions(32);
+        Outcome outcome = Build(context, &options, &mesh);
+        assert_true(outcome.stats.outside == 0);
+        assert_true(outcome.stats.tolerance == 0.0 && outcome.stats.surfacePanels > 0);
+        // The rod alone is nothing else, and it is told.
+        assert_true(hasBlade == (outcome.precision > 0.998));
+        assert_true(hasBlade == (strstr(warnings.text, "parts are thinner than a voxel") == NULL));
+        warnings.text[0] = '\0';
+        pvtOccluder_Free(context, &outcome.occluder);
+        pvtMesh_Free(context, &mesh);
+    }
     DestroyTestContext(context);
 }
 
@@ -573,6 +610,7 @@ int main(void)
         cmocka_unit_test(a_tent_is_covered_by_its_two_sides),
         cmocka_unit_test(walls_that_meet_leave_next_to_no_gap),
         cmocka_unit_test(a_gable_with_a_window_is_covered_up_to_its_slants_and_corners),
+        cmocka_unit_test(a_rod_thinner_than_a_voxel_hides_nothing_beside_it),
         cmocka_unit_test(cracks_in_a_wall_close_without_a_fold),
         cmocka_unit_test(panels_of_a_bent_sheet_stay_as_close_to_it_as_the_stats_say),
         cmocka_unit_test(a_wall_that_bulges_by_two_voxels_is_hidden_behind_as_a_whole),
