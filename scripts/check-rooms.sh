@@ -91,7 +91,8 @@ check_languages() {
 # classes, into the first column.
 check_lengths() {
     local text
-    text="$(find lib apps tests -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp' \) -print0 |
+    text="$(find lib apps tests -type f \
+        \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp' \) -print0 |
         sort -z | xargs -0 awk '
         FNR == 1 {
             if (lines > 700) print last ": " lines " lines; a file has at most 700"

@@ -12,7 +12,8 @@ case "${1:-}" in
     ;;
 esac
 
-find lib apps tests -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp' \) -print0 |
+find lib apps tests -type f \
+    \( -name '*.c' -o -name '*.h' -o -name '*.cpp' -o -name '*.hpp' \) -print0 |
     sort -z | xargs -0 clang-format --style=file "${options[@]}"
 
 # What clang-format does not look at: line ends, trailing blanks and the last line feed of scripts.

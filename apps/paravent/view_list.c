@@ -97,7 +97,7 @@ static pvtStatus ReadLines(pvtRun* run, FILE* file, const char* path, pvtViewLis
         if (reason == NULL) {
             reason = ReadLine(line, &view, &isEmpty);
         }
-        if (reason == NULL && !isEmpty && list->count == PVT_MAX_LISTED_VIEWS) {
+        if (reason == NULL && !isEmpty && list->count == PVT_MAX_VIEWS) {
             reason = "more than 4096 directions";
         }
         if (reason != NULL) {
@@ -129,7 +129,7 @@ pvtStatus pvtReadViewList(pvtRun* run, const char* path, pvtViewList* list)
                            "--views %s: %s; it takes all, above or a file's name", path,
                            strerror(errno));
     }
-    list->directions = calloc(PVT_MAX_LISTED_VIEWS, sizeof *list->directions);
+    list->directions = calloc(PVT_MAX_VIEWS, sizeof *list->directions);
     const pvtStatus status = list->directions != NULL
                                  ? ReadLines(run, file, path, list)
                                  : pvtRun_Fail(run, PVT_OUT_OF_MEMORY, "out of memory");

@@ -5,8 +5,6 @@
 
 #include "run.h"
 
-enum { PVT_MAX_LISTED_VIEWS = 4096 };
-
 /// What --views FILE held. Made by malloc, as the context is not yet there when files are checked.
 typedef struct pvtViewList {
     pvtWeightedDirection* directions;

@@ -10,9 +10,8 @@
 
 #include <math.h>
 
-// [vx] at 256 voxels along the longest side.
+// [vx] at PVT_BAND_RESOLUTION.
 static const double REACHES[PVT_BAND_COUNT] = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
-static const double REACH_RESOLUTION = 256.0;
 enum { MOST_RESOLUTION = 640 }; // along the longest side, for an error that was asked for
 // Of the touched voxels: an inside of fewer is none.
 static const double LEAST_INSIDE = 0.01;
@@ -24,7 +23,7 @@ static const double LITTLE_SHARE = 0.3, HOPELESS_RECALL = 0.05;
 
 double pvtGetBandReach(const pvtBuild* build, int number)
 {
-    const double voxels = REACHES[number] * build->stats.resolution / REACH_RESOLUTION;
+    const double voxels = REACHES[number] * build->stats.resolution / PVT_BAND_RESOLUTION;
     return fmax(voxels, 1.0) * build->stats.voxelSize;
 }
 

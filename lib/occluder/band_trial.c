@@ -16,7 +16,6 @@ static const double WHOLE = 0.5;
 // Of what a band as a whole hides, at the widest at 256 voxels: where the touched voxels hide less
 // than this, more than their rim has grown. Below it goes by the reach, a voxel at a time.
 static const double RIM_LOSS = 0.15, MOST_LOSS = 0.45;
-static const double REACH_RESOLUTION = 256.0; // that voxels are counted in
 // Of what the surface hides: where a selection in a band, without refinement, hides this part of
 // it, there is room for triangles that hide nearly all in the end.
 static const double WIDE_ENOUGH = 0.8;
@@ -169,7 +168,7 @@ static pvtStatus JudgeReach(pvtContext* context, const pvtBuild* build, int numb
                             bool* isWhole)
 {
     const double voxelsPerUnit =
-        REACH_RESOLUTION / build->stats.resolution / build->stats.voxelSize;
+        (double)PVT_BAND_RESOLUTION / build->stats.resolution / build->stats.voxelSize;
     const double reach = pvtGetBandReach(build, number);
     const pvtStatus status = TryReach(context, build, reach, trial);
     *isWhole = status == PVT_OK && IsWhole(trial, reach * voxelsPerUnit);

@@ -9,8 +9,9 @@
 #include <paravent/evaluate.h>
 
 enum {
-    PVT_BAND_COUNT = 7, ///< widths, numbered from the narrowest
-    PVT_BAND_STEP = 2,  ///< from one that is looked for to the next
+    PVT_BAND_COUNT = 7,        ///< widths, numbered from the narrowest
+    PVT_BAND_STEP = 2,         ///< from one that is looked for to the next
+    PVT_BAND_RESOLUTION = 256, ///< [vx] along the longest side, that widths are given at
 };
 
 /// [wu] How far a band reaches from the touched voxels, in the build's resolution.

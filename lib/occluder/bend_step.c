@@ -9,7 +9,7 @@
 #include "base/vector.h"
 #include "voxel/bit_grid.h"
 
-enum { MORE_VIEWS = 3, MOST_VIEWS = 4096 }; // for each that is optimised for; of all
+enum { MORE_VIEWS = 3 }; // for each that is optimised for
 
 static const double MAX_BEND_BYTES = 0x1p27;
 
@@ -25,8 +25,8 @@ static pvtStatus MakeMoreViews(pvtContext* context, const pvtBuild* build, pvtVi
     if (options.list != NULL || bytes > MAX_BEND_BYTES) {
         return PVT_OK;
     }
-    options.count =
-        options.count < MOST_VIEWS / MORE_VIEWS ? MORE_VIEWS * options.count : MOST_VIEWS;
+    const int most = PVT_MAX_VIEWS / MORE_VIEWS;
+    options.count = options.count <= most ? MORE_VIEWS * options.count : PVT_MAX_VIEWS;
     pvtStatus status = pvtMakeViews(context, &options, set);
     pvtWeightedDirection* list = pvtAllocate(context, set->count, sizeof *list);
     if (status == PVT_OK && list == NULL) {

@@ -154,21 +154,27 @@ typedef struct Worths {
     double hidden; // those of which nothing is missing
 } Worths;
 
+// A rectangle that counts `weight`, by what is missing of it.
+static inline void WeighQuad(const pvtSightQuad* quad, float weight, uint16_t (*sums)[STRIDE],
+                             float softness, Worths* worths, float (*values)[STRIDE])
+{
+    const float here = pvtGetWorth(pvtCountMissing(sums, quad), softness);
+    worths->worth += (double)(weight * here);
+    worths->hidden += here >= 1.0F ? (double)weight : 0.0;
+    AddSlope(quad, weight * here * here / softness, values);
+}
+
 // Fills the values, unless there are none.
 static Worths WeighCells(const pvtPuller* puller, const pvtSight* sight,
                          const pvtSightMask* missing, float (*values)[STRIDE])
 {
     uint16_t sums[ENDS][STRIDE];
-    const float softness = puller->options.softness;
     pvtSumMissing(missing, sums);
     ClearValues(values);
     Worths worths = {0.0, 0.0};
     const pvtSightQuad* quads = puller->sights->quads + sight->firstQuad;
     for (size_t q = 0; q < sight->quadCount; ++q) {
-        const float here = pvtGetWorth(pvtCountMissing(sums, &quads[q]), softness);
-        worths.worth += (double)here;
-        worths.hidden += here >= 1.0F ? 1.0 : 0.0;
-        AddSlope(&quads[q], here * here / softness, values);
+        WeighQuad(&quads[q], 1.0F, sums, puller->options.softness, &worths, values);
     }
     SumValues(values);
     return worths;
@@ -179,18 +185,13 @@ static Worths WeighWrong(const pvtPuller* puller, const pvtSight* sight,
                          const pvtSightMask* covered, float (*values)[STRIDE])
 {
     uint16_t sums[ENDS][STRIDE];
-    const float softness = puller->options.softness;
     pvtSumOpen(covered, sums);
     ClearValues(values);
     Worths worths = {0.0, 0.0};
     const pvtWrongQuad* wrongs = puller->sights->wrongs + sight->firstWrong;
     for (size_t q = 0; q < sight->wrongCount; ++q) {
-        const pvtSightQuad* quad = &wrongs[q].quad;
-        const float weight = wrongs[q].weight;
-        const float here = pvtGetWorth(pvtCountMissing(sums, quad), softness);
-        worths.worth += (double)(weight * here);
-        worths.hidden += here >= 1.0F ? (double)weight : 0.0;
-        AddSlope(quad, weight * here * here / softness, values);
+        WeighQuad(&wrongs[q].quad, wrongs[q].weight, sums, puller->options.softness, &worths,
+                  values);
     }
     SumValues(values);
     return worths;
@@ -296,35 +297,36 @@ static void PullEdges(const pvtPuller* puller, size_t b, float (*places)[2], con
 static void LoseWrong(const pvtPuller* puller, const pvtSight* sight, const float (*slopes)[STRIDE],
                       pvtSightMask* missing, Lack* lack)
 {
-    uint64_t whole[CELLS];
-    pvtFindWholeCells(&sight->goal, whole);
-    for (int y = 0; y < CELLS; ++y) {
-        for (int x = 0; x < CELLS; ++x) {
-            if ((whole[y] >> x & 1) == 0) {
-                lack->values[y + 1][x + 1] = -puller->options.wrongCost * slopes[y + 1][x + 1];
-            }
-        }
-    }
     for (int half = 0; half < PVT_SIGHT_WORDS; ++half) {
-        for (int y = 0; y < SIZE; ++y) {
-            const uint64_t* goal = &sight->goal.words[half][y & ~1];
+        for (int y = 0; y < CELLS; ++y) {
+            const uint64_t* goal = sight->goal.words[half] + 2 * (size_t)y;
             const uint64_t both = goal[0] & goal[1];
-            const uint64_t cells = both & both >> 1 & EVEN;
-            missing->words[half][y] &= cells | cells << 1;
-            missing->words[half][y] |= ~sight->goal.words[half][y];
+            const uint64_t whole = both & both >> 1 & EVEN;
+            uint64_t* rows = missing->words[half] + 2 * (size_t)y;
+            for (int i = 0; i < 2; ++i) {
+                rows[i] = (rows[i] & (whole | whole << 1)) | ~goal[i];
+            }
+            for (int x = 0; x < 32; ++x) {
+                if ((whole >> (2 * x) & 1) == 0) {
+                    const int column = 32 * half + x + 1;
+                    lack->values[y + 1][column] =
+                        -puller->options.wrongCost * slopes[y + 1][column];
+                }
+            }
         }
     }
 }
 
 // Pixels beyond the goal are as missing ones that are worth less than nothing.
-static void LoseBeyond(const pvtPuller* puller, size_t b, const pvtSightMask* covered,
-                       pvtSightMask* missing, Lack* lack, double* worth)
+static void LoseBeyond(pvtPuller* puller, size_t b, const pvtSightMask* covered,
+                       pvtSightMask* missing, Lack* lack)
 {
     const pvtSight* sight = pvtPuller_GetSight(puller, b);
     pvtSightMask beyond;
     pvtFindBeyond(&sight->goal, &beyond);
     if (puller->options.wantsNoPulls) {
-        *worth -= (double)sight->quadCount * pvtGetCostBeyond(&sight->goal, &beyond, covered);
+        puller->worth[b] -=
+            (double)sight->quadCount * pvtGetCostBeyond(&sight->goal, &beyond, covered);
         return;
     }
     lack->hasLosses = true;
@@ -356,7 +358,7 @@ static void WeighSight(pvtPuller* puller, size_t b, const pvtSightMask* covered,
         }
     }
     if (puller->options.mindsBeyond) {
-        LoseBeyond(puller, b, covered, missing, lack, &puller->worth[b]);
+        LoseBeyond(puller, b, covered, missing, lack);
     }
 }
 

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <paravent/occlusion.h>
 
-enum { MAX_VIEWS = 4096 };
-
 pvtViewOptions pvtDefaultViewOptions(void)
 {
     return (pvtViewOptions){.count = 64, .up = 1};
@@ -63,9 +61,9 @@ static double WeighElevation(pvtVec3 direction, int up)
 static pvtStatus CheckOptions(pvtContext* context, const pvtViewOptions* options)
 {
     const size_t count = options->list != NULL ? options->listCount : (size_t)options->count;
-    if ((options->list == NULL && options->count < 1) || count < 1 || count > MAX_VIEWS) {
+    if ((options->list == NULL && options->count < 1) || count < 1 || count > PVT_MAX_VIEWS) {
         return pvtFail(context, PVT_INVALID_ARGUMENT, "%zu view directions; 1 to %d are possible",
-                       count, MAX_VIEWS);
+                       count, PVT_MAX_VIEWS);
     }
     for (size_t i = 0; options->list != NULL && i < count; ++i) {
         const pvtWeightedDirection* item = &options->list[i];

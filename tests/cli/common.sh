@@ -33,8 +33,8 @@ expect() {
     shift 2
     checks=$((checks + 1))
     paravent "$@"
-    # What looks for leaks may itself crash at the end, as threads of a driver of OpenGL go: it has found
-    # nothing then, and looks again.
+    # What looks for leaks may itself crash at the end, as threads of a driver of OpenGL go: it has
+    # found nothing then, and looks again.
     if grep -qF "LeakSanitizer has encountered a fatal error" err; then
         paravent "$@"
     fi

@@ -79,6 +79,29 @@ static void cells_away_from_the_goal_are_beyond_it(void** state)
     DestroyTestContext(context);
 }
 
+// The one triangle of a set: across x, with its corners so far from the middle [vx].
+static void PlaceAcross(float reach, pvtTriangleSet* set)
+{
+    for (int k = 0; k < 3; ++k) {
+        const float angle = 2.1F * (float)k;
+        set->corners[k][0] = CENTER;
+        set->corners[k][1] = CENTER + reach * cosf(angle);
+        set->corners[k][2] = CENTER + reach * sinf(angle);
+    }
+}
+
+// Whether all corners are pulled towards the middle.
+static bool AreDrawnIn(const Lesson* lesson)
+{
+    bool areIn = true;
+    for (int c = 0; c < 3; ++c) {
+        const float* pull = lesson->puller.corners[c];
+        const float* corner = lesson->set.corners[c];
+        areIn = areIn && pull[1] * (corner[1] - CENTER) + pull[2] * (corner[2] - CENTER) < 0.0F;
+    }
+    return areIn;
+}
+
 // It hides all of the ball, so that nothing else pulls.
 static void what_reaches_beyond_the_goal_is_pulled_back(void** state)
 {
@@ -86,12 +109,7 @@ static void what_reaches_beyond_the_goal_is_pulled_back(void** state)
     pvtContext* context = CreateTestContext(2);
     Lesson lesson;
     MakeLesson(context, 1, RADIUS, &lesson);
-    for (int k = 0; k < 3; ++k) {
-        const float angle = 2.1F * (float)k, reach = 3.0F * RADIUS;
-        lesson.set.corners[k][0] = CENTER;
-        lesson.set.corners[k][1] = CENTER + reach * cosf(angle);
-        lesson.set.corners[k][2] = CENTER + reach * sinf(angle);
-    }
+    PlaceAcross(3.0F * RADIUS, &lesson.set);
     for (size_t s = 0; s < lesson.sights.count; ++s) {
         // From the side it is an edge, and hides little.
         const pvtSight* sight = &lesson.sights.sights[s];
@@ -109,11 +127,7 @@ static void what_reaches_beyond_the_goal_is_pulled_back(void** state)
     options.mindsBeyond = true;
     pvtPullCorners(context, &options, &lesson.puller);
     assert_true(lesson.puller.share > 0.999); // what edges are pulled by is as without
-    for (int c = 0; c < 3; ++c) {
-        const float* pull = lesson.puller.corners[c];
-        const float* corner = lesson.set.corners[c];
-        assert_true(pull[1] * (corner[1] - CENTER) + pull[2] * (corner[2] - CENTER) < 0.0F);
-    }
+    assert_true(AreDrawnIn(&lesson));
     options.wantsNoPulls = true;
     pvtPullCorners(context, &options, &lesson.puller);
     assert_true(lesson.puller.share < 0.0);
@@ -146,25 +160,8 @@ static void MakePlateLesson(pvtContext* context, float reach, Lesson* lesson)
              pvtCreateMeshSights(context, &options, &lesson->grid.frame, &plate, &lesson->sights));
     pvtMesh_Free(context, &plate);
     RollTriangles(context, 1, reach, &lesson->set);
-    for (int k = 0; k < 3; ++k) {
-        const float angle = 2.1F * (float)k;
-        lesson->set.corners[k][0] = CENTER;
-        lesson->set.corners[k][1] = CENTER + reach * cosf(angle);
-        lesson->set.corners[k][2] = CENTER + reach * sinf(angle);
-    }
+    PlaceAcross(reach, &lesson->set);
     CHECK_OK(context, pvtCreatePuller(context, &lesson->sights, &lesson->set, &lesson->puller));
-}
-
-// Whether all corners are pulled towards the middle.
-static bool AreDrawnIn(const Lesson* lesson)
-{
-    bool areIn = true;
-    for (int c = 0; c < 3; ++c) {
-        const float* pull = lesson->puller.corners[c];
-        const float* corner = lesson->set.corners[c];
-        areIn = areIn && pull[1] * (corner[1] - CENTER) + pull[2] * (corner[2] - CENTER) < 0.0F;
-    }
-    return areIn;
 }
 
 static void what_is_hidden_wrongly_is_counted_and_pulled_back(void** state)

@@ -26,8 +26,10 @@ typedef struct pvtWeightedDirection {
     double weight;
 } pvtWeightedDirection;
 
+enum { PVT_MAX_VIEWS = 4096 }; ///< directions of a set
+
 typedef struct pvtViewOptions {
-    int count;      ///< 1 to 4096 directions spread over the hemisphere; default 64
+    int count;      ///< 1 to PVT_MAX_VIEWS directions spread over the hemisphere; default 64
     bool aboveOnly; ///< only directions that look down or level along `up`; default false
     int up;         ///< 0, 1, 2: the axis of aboveOnly; default 1
     const pvtWeightedDirection* list; ///< not null: these, instead of the even spread; borrowed
